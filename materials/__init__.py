@@ -1,0 +1,64 @@
+"""What a constitutive law is: declarations, registry, tensor algebra, compilation and element tests."""
+
+from materials.declarations import Parameter, StateVariable, checked_parameters
+from materials.errors import InputError, SimulationError
+from materials.law import HOOK_VERSION, Law, ParameterSet
+from materials.pointwise import pointwise
+from materials.registry import get_material, hookimpl, registry
+from materials.rheology import (
+    friction_of_inertial_number,
+    inertial_number,
+    longitudinal_wave_speed,
+    own_inertial_number_constant,
+    shear_modulus,
+)
+from materials.tensor import (
+    SymmetricTensor,
+    added,
+    assembled_stress,
+    contraction,
+    deviator,
+    deviatoric_stress,
+    equivalent_shear_stress,
+    half_norm,
+    isotropic,
+    pressure,
+    scaled,
+    shear_strain_rate,
+    trace,
+    volumetric_strain_rate,
+)
+
+__all__ = [
+    "HOOK_VERSION",
+    "InputError",
+    "Law",
+    "Parameter",
+    "ParameterSet",
+    "SimulationError",
+    "StateVariable",
+    "SymmetricTensor",
+    "added",
+    "assembled_stress",
+    "checked_parameters",
+    "contraction",
+    "deviator",
+    "deviatoric_stress",
+    "equivalent_shear_stress",
+    "friction_of_inertial_number",
+    "get_material",
+    "half_norm",
+    "hookimpl",
+    "inertial_number",
+    "isotropic",
+    "longitudinal_wave_speed",
+    "own_inertial_number_constant",
+    "pointwise",
+    "pressure",
+    "registry",
+    "scaled",
+    "shear_modulus",
+    "shear_strain_rate",
+    "trace",
+    "volumetric_strain_rate",
+]

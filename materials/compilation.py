@@ -1,0 +1,96 @@
+"""Compiling a law: the same plain functions, made callable from njit code and cached on disk.
+
+The disk cache of the compiler is keyed on the file of the generated function and on the values that it closes over. A
+compiled law therefore closes over its plain functions and over a hash of every source that they may call: an edited law
+recompiles, an unedited one loads from disk.
+"""
+
+import hashlib
+import inspect
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from numba import njit
+from numba.core.errors import NumbaError
+from numba.extending import register_jitable
+
+from materials.errors import InputError
+from materials.law import Law
+from materials.pointwise import MARKED
+
+
+@cache
+def _register_marked(function: Callable[..., Any]) -> Callable[..., Any]:
+    return register_jitable(function)
+
+
+def _register_helpers() -> None:
+    for function in MARKED:
+        _register_marked(function)
+
+
+@dataclass(frozen=True)
+class PointwiseLaw:
+    """A law's functions, callable from compiled code, and the hash of all the sources behind them."""
+
+    name: str
+    initial_state: Callable[..., Any]
+    update: Callable[..., Any]
+    sound_speed: Callable[..., Any]
+    source_hash: int
+
+
+@cache
+def _pointwise_law(name: str, *functions: Callable[..., Any]) -> PointwiseLaw:
+    _register_helpers()
+    digest = hashlib.sha256()
+    for path in sorted(_source_files(functions)):
+        digest.update(path.read_bytes())
+    initial_state, update, sound_speed = (_register_marked(function) for function in functions)
+    return PointwiseLaw(name, initial_state, update, sound_speed, int.from_bytes(digest.digest()[:7], "big"))
+
+
+def _source_files(functions: Iterable[Callable[..., Any]]) -> set[Path]:
+    """The files of these functions and of every marked function that they call, directly or not."""
+    marked = set(MARKED)
+    files: set[Path] = set()
+    seen: set[Callable[..., Any]] = set()
+    pending = list(functions)
+    while pending:
+        function = pending.pop()
+        if function in seen:
+            continue
+        seen.add(function)
+        files.add(Path(inspect.getfile(function)))
+        named = (function.__globals__.get(name) for name in function.__code__.co_names)
+        pending.extend(found for found in named if inspect.isfunction(found) and found in marked)
+    return files
+
+
+def pointwise_law(law: Law) -> PointwiseLaw:
+    """The functions of a law, registered with the compiler."""
+    return _pointwise_law(law.name, law.initial_state, law.update, law.sound_speed)
+
+
+def explained(law: Law, kernel: Callable[..., Any], *arguments: Any) -> Any:
+    """Call a kernel, turning a compilation error into one line that names the law."""
+    try:
+        return kernel(*arguments)
+    except NumbaError as error:
+        reason = next((line.strip() for line in str(error).splitlines() if line.strip()), "unknown reason")
+        raise InputError(f"law '{law.name}' ({law.source_file.name}) does not compile: {reason}") from error
+
+
+def make_single_step(law: PointwiseLaw) -> Any:
+    """One compiled update of one point, for tests that compare it with plain Python."""
+    update, source_hash = law.update, law.source_hash
+
+    @njit(cache=True)
+    def single_step(stress, strain_rate, density, state, parameters, dt):  # type: ignore[no-untyped-def]
+        assert source_hash
+        return update(stress, strain_rate, density, state, parameters, dt)
+
+    return single_step

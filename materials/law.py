@@ -1,0 +1,110 @@
+"""What a constitutive law is: declarations and three pure functions of scalars."""
+
+import inspect
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from materials.declarations import DeclarationError, Parameter, StateVariable, declared_fields
+from materials.tensor import SymmetricTensor, isotropic
+
+HOOK_VERSION = 1
+
+
+@dataclass(frozen=True)
+class ParameterSet:
+    """Named values for a law, with their source and the bulk density [kg/m3] at rest under a given pressure [Pa]."""
+
+    parameters: Any
+    source: str
+    density: Callable[[float, Any], float]
+
+
+@dataclass(frozen=True)
+class Law:
+    """A constitutive law, declared once and used by the element tests, the MPM core, the output and the docs.
+
+    name            lower-case identifier by which scenes and the command line call the law
+    summary         one line for listings
+    parameters      NamedTuple class whose fields are annotated with `Parameter`
+    state           NamedTuple class whose fields are annotated with `StateVariable` (it may have none)
+    initial_state   (stress, density, parameters) -> state; the state in equilibrium with a given stress [Pa] and
+                    bulk density [kg/m3]
+    update          (stress, strain_rate, density, state, parameters, dt) -> (stress, state); one step of dt [s] at the
+                    strain rate D [1/s], ending at `density`; the caller has already rotated the stress
+    sound_speed     (stress, density, state, parameters) -> fastest wave speed [m/s]
+    parameter_sets  named parameter sets, the first of which element tests take by default
+    hook_version    version of this interface that the law was written for
+
+    The three functions take and return scalars and NamedTuples, call only `math` and functions marked with
+    `pointwise`, and have no side effects.
+    """
+
+    name: str
+    summary: str
+    parameters: type[Any]
+    state: type[Any]
+    initial_state: Callable[[SymmetricTensor, float, Any], Any]
+    update: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any]]
+    sound_speed: Callable[[SymmetricTensor, float, Any, Any], float]
+    parameter_sets: Mapping[str, ParameterSet] = field(default_factory=dict)
+    hook_version: int = HOOK_VERSION
+
+    @property
+    def parameter_declarations(self) -> dict[str, Parameter]:
+        """Parameter declarations by name."""
+        return declared_fields(self.parameters, Parameter)
+
+    @property
+    def state_declarations(self) -> dict[str, StateVariable]:
+        """State variable declarations by name."""
+        return declared_fields(self.state, StateVariable)
+
+    @property
+    def source_file(self) -> Path:
+        """The file that defines the law."""
+        return Path(inspect.getfile(self.update))
+
+    @property
+    def documentation(self) -> str:
+        """The header of the law's file: equations, source, conventions, range of validity."""
+        return inspect.getdoc(inspect.getmodule(self.update)) or ""
+
+
+def check_law(law: Law) -> None:
+    """Refuse a law that cannot be trusted at all, raising DeclarationError with the reason.
+
+    Checks the name, the hook version, every declaration and one step of every named parameter set in plain Python.
+    """
+    if not re.fullmatch(r"[a-z][a-z0-9_]*", law.name):
+        raise DeclarationError(f"the name '{law.name}' is not lower_case_with_underscores")
+    if law.hook_version != HOOK_VERSION:
+        raise DeclarationError(f"written for hook version {law.hook_version}; this grainlaw has {HOOK_VERSION}")
+    if not law.summary.strip():
+        raise DeclarationError("no summary")
+    declared_fields(law.parameters, Parameter)
+    declared_fields(law.state, StateVariable)
+    for name, parameter_set in law.parameter_sets.items():
+        _check_one_step(law, name, parameter_set)
+
+
+def _check_one_step(law: Law, name: str, parameter_set: ParameterSet) -> None:
+    parameters = parameter_set.parameters
+    for parameter, declaration in law.parameter_declarations.items():
+        if not declaration.interval.contains(getattr(parameters, parameter)):
+            raise DeclarationError(f"parameter set '{name}': {parameter} is outside {declaration.bounds}")
+    try:
+        density = parameter_set.density(1000.0, parameters)
+        stress = isotropic(-1000.0)
+        state = law.initial_state(stress, density, parameters)
+        strain_rate = SymmetricTensor(-1e-3, 1e-3, 0.0, 1e-3, 0.0, 0.0)
+        stress, state = law.update(stress, strain_rate, density, state, parameters, 1e-5)
+        speed = law.sound_speed(stress, density, state, parameters)
+    except Exception as error:
+        reason = f"{type(error).__name__}: {error}"
+        raise DeclarationError(f"one step with parameter set '{name}' raises {reason}") from error
+    if not all(math.isfinite(value) for value in (*stress, *state, speed)):
+        raise DeclarationError(f"one step with parameter set '{name}' gives a value that is not finite")

@@ -1,0 +1,100 @@
+"""Symmetric tensors and their invariants, one definition each.
+
+Tensors are tension-positive; pressure is compression-positive. Every function here takes and returns scalars or
+`SymmetricTensor`s, works as plain Python and is compiled together with the law that calls it.
+"""
+
+import math
+from typing import NamedTuple
+
+from materials.pointwise import pointwise
+
+
+class SymmetricTensor(NamedTuple):
+    """The six independent components of a symmetric 3 x 3 tensor (stress [Pa] or strain rate [1/s])."""
+
+    xx: float
+    yy: float
+    zz: float
+    xy: float
+    yz: float
+    xz: float
+
+
+@pointwise
+def isotropic(value: float) -> SymmetricTensor:
+    """Value * 1."""
+    return SymmetricTensor(value, value, value, 0.0, 0.0, 0.0)
+
+
+@pointwise
+def scaled(a: SymmetricTensor, factor: float) -> SymmetricTensor:
+    """Factor * a."""
+    return SymmetricTensor(factor * a.xx, factor * a.yy, factor * a.zz, factor * a.xy, factor * a.yz, factor * a.xz)
+
+
+@pointwise
+def added(a: SymmetricTensor, b: SymmetricTensor) -> SymmetricTensor:
+    """A + b."""
+    return SymmetricTensor(a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.yz + b.yz, a.xz + b.xz)
+
+
+@pointwise
+def trace(a: SymmetricTensor) -> float:
+    """tr(a)."""
+    return a.xx + a.yy + a.zz
+
+
+@pointwise
+def contraction(a: SymmetricTensor, b: SymmetricTensor) -> float:
+    """A : b."""
+    return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2.0 * (a.xy * b.xy + a.yz * b.yz + a.xz * b.xz)
+
+
+@pointwise
+def deviator(a: SymmetricTensor) -> SymmetricTensor:
+    """A - tr(a)/3 1."""
+    mean = trace(a) / 3.0
+    return SymmetricTensor(a.xx - mean, a.yy - mean, a.zz - mean, a.xy, a.yz, a.xz)
+
+
+@pointwise
+def pressure(stress: SymmetricTensor) -> float:
+    """P = -tr(sigma)/3 [Pa], compression-positive."""
+    return -trace(stress) / 3.0
+
+
+@pointwise
+def half_norm(deviatoric: SymmetricTensor) -> float:
+    """sqrt(1/2 a:a) of a tensor that is already deviatoric."""
+    return math.sqrt(0.5 * contraction(deviatoric, deviatoric))
+
+
+@pointwise
+def equivalent_shear_stress(stress: SymmetricTensor) -> float:
+    """Tau = sqrt(1/2 s:s) = q/sqrt(3) [Pa]."""
+    return half_norm(deviator(stress))
+
+
+@pointwise
+def deviatoric_stress(stress: SymmetricTensor) -> float:
+    """Q = sqrt(3/2 s:s) [Pa]."""
+    return math.sqrt(3.0) * half_norm(deviator(stress))
+
+
+@pointwise
+def shear_strain_rate(strain_rate: SymmetricTensor) -> float:
+    """gamma_dot = sqrt(1/2 D_d:D_d) [1/s]; half of the engineering rate in simple shear."""
+    return half_norm(deviator(strain_rate))
+
+
+@pointwise
+def volumetric_strain_rate(strain_rate: SymmetricTensor) -> float:
+    """d(eps_v)/dt = -tr(D) [1/s], compression-positive."""
+    return -trace(strain_rate)
+
+
+@pointwise
+def assembled_stress(mean_pressure: float, deviatoric: SymmetricTensor) -> SymmetricTensor:
+    """Sigma = -p 1 + s [Pa]."""
+    return added(isotropic(-mean_pressure), deviatoric)

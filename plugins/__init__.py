@@ -1,0 +1,1 @@
+"""The laws that ship with grainlaw, one file each, registered through the same entry points as anybody's."""

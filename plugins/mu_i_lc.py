@@ -1,0 +1,165 @@
+"""mu(I)-LC rheology: mu(I) friction, linear compression, and an elastic predictor for the limit of rest.
+
+    p      = K_LC (phi/phi_ref - 1), stress-free where phi <= phi_ref                        (paper Eq. 6)
+    I      = gamma_dot^p d_p / sqrt(p/rho_p)                                                 (paper Eq. 1)
+    mu(I)  = mu_0 + (mu_d - mu_0) / (I_0/I + 1)                                              (paper Eq. 2)
+    s_dot  = 2 G (D_d - D^p),  D^p = gamma_dot^p s/tau,  tau <= mu(I) p                      (paper Eqs. 3-4)
+
+The published law sets s = eta D_d, with a regularised viscosity near rest (`mu_i_lc_viscous`). Here the rate is split
+into an elastic and a plastic part (Dunatunga & Kamrin 2015, J. Fluid Mech. 779), so that tau may stay below mu_0 p:
+material at rest stays at rest, and alpha = 0. In steady shear the elastic rate vanishes and tau = mu(I) p exactly.
+
+Over a step dt, with the trial stress tau_trial = |s + 2 G dt D_d|, the plastic rate x is the positive root of
+
+    tau_trial - 2 G dt x = mu(I(x)) p,
+
+a quadratic in x, solved in closed form (backward Euler).
+
+Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", Eqs. 1-6, Table 1.
+Conventions: tensors tension-positive, p compression-positive; tau = sqrt(1/2 s:s), gamma_dot = sqrt(1/2 D_d:D_d), so
+I_0 belongs to half of the engineering rate (`own_inertial_number_constant` converts a literature value).
+phi_ref follows for each point from its initial pressure and density, so that the initial state is in equilibrium.
+Valid for dense flow at constant critical friction: no dilatancy, no memory of the packing but its density.
+"""
+
+import math
+from typing import Annotated, Any, NamedTuple
+
+from materials import (
+    Law,
+    Parameter,
+    ParameterSet,
+    StateVariable,
+    SymmetricTensor,
+    added,
+    assembled_stress,
+    deviator,
+    half_norm,
+    hookimpl,
+    longitudinal_wave_speed,
+    pointwise,
+    pressure,
+    scaled,
+    shear_modulus,
+)
+
+
+class Parameters(NamedTuple):
+    """Material constants."""
+
+    static_friction: Annotated[float, Parameter("1", "friction coefficient mu_0 of slow flow, M/sqrt(3)", "[0, inf)")]
+    dynamic_friction: Annotated[
+        float, Parameter("1", "friction coefficient mu_d of fast flow, M_d/sqrt(3)", "[0, inf)")
+    ]
+    inertial_number_constant: Annotated[
+        float, Parameter("1", "I_0, where mu is halfway from mu_0 to mu_d; for the rate sqrt(1/2 D_d:D_d)", "(0, inf)")
+    ]
+    bulk_modulus: Annotated[float, Parameter("Pa", "bulk modulus K_LC of the linear compression law", "(0, inf)")]
+    poisson_ratio: Annotated[float, Parameter("1", "Poisson's ratio nu of the elastic predictor", "(-1, 0.5)")]
+    grain_density: Annotated[float, Parameter("kg/m3", "density rho_p of the grains", "(0, inf)")]
+    grain_diameter: Annotated[float, Parameter("m", "diameter d_p of the grains", "(0, inf)")]
+
+
+class State(NamedTuple):
+    """What a point remembers."""
+
+    reference_solid_fraction: Annotated[
+        float, StateVariable("1", "solid fraction phi_ref at which the grains lose contact", output=False)
+    ]
+
+
+def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
+    """The reference solid fraction at which Eq. 6 returns the present pressure."""
+    solid_fraction = density / parameters.grain_density
+    return State(solid_fraction / (1.0 + max(0.0, pressure(stress)) / parameters.bulk_modulus))
+
+
+def update(
+    stress: SymmetricTensor,
+    strain_rate: SymmetricTensor,
+    density: float,
+    state: State,
+    parameters: Parameters,
+    dt: float,
+) -> tuple[SymmetricTensor, State]:
+    """Linear compression, elastic predictor, return to tau = mu(I) p."""
+    solid_fraction = density / parameters.grain_density
+    new_pressure = max(0.0, parameters.bulk_modulus * (solid_fraction / state.reference_solid_fraction - 1.0))
+
+    stiffness = 2.0 * shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio) * dt
+    trial = added(deviator(stress), scaled(deviator(strain_rate), stiffness))
+    trial_shear_stress = half_norm(trial)
+    plastic_rate = plastic_shear_rate(trial_shear_stress, new_pressure, stiffness, parameters)
+    remaining = trial_shear_stress - stiffness * plastic_rate
+    factor = max(0.0, remaining) / max(trial_shear_stress, 1e-300)
+    return assembled_stress(new_pressure, scaled(trial, factor if new_pressure > 0.0 else 0.0)), state
+
+
+@pointwise
+def plastic_shear_rate(
+    trial_shear_stress: float, new_pressure: float, stiffness: float, parameters: Parameters
+) -> float:
+    """The root x >= 0 of tau_trial - stiffness x = mu(I(x)) p [1/s]; zero below the static yield stress."""
+    static_stress = parameters.static_friction * new_pressure
+    if trial_shear_stress <= static_stress:
+        return 0.0
+    dynamic_stress = parameters.dynamic_friction * new_pressure
+    reference_rate = (
+        parameters.inertial_number_constant * math.sqrt(new_pressure / parameters.grain_density)
+    ) / parameters.grain_diameter
+    # stiffness x^2 - b x - c = 0
+    b = trial_shear_stress - dynamic_stress - stiffness * reference_rate
+    c = reference_rate * (trial_shear_stress - static_stress)
+    root = math.sqrt(b * b + 4.0 * stiffness * c)
+    # Of the two forms of the root, the one that subtracts nothing.
+    return (b + root) / (2.0 * stiffness) if b > 0.0 else 2.0 * c / max(root - b, 1e-300)
+
+
+def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Speed of longitudinal elastic waves."""
+    modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
+    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
+
+
+def density_of_table_1(mean_pressure: float, parameters: Parameters) -> float:
+    """Bulk density [kg/m3] with Table 1's phi_ref = 1.317.
+
+    That number is no solid fraction but 1/(v_cs (1 + p/K_LC)), with the critical-state specific volume v_cs = 0.7574 of
+    the Cam Clay material at 1000 Pa; it places this law on the critical state line of Figure 1(c).
+    """
+    return 1.317 * parameters.grain_density * (1.0 + mean_pressure / parameters.bulk_modulus)
+
+
+PAPER = Parameters(
+    static_friction=1.20 / math.sqrt(3.0),
+    dynamic_friction=2.16 / math.sqrt(3.0),
+    inertial_number_constant=0.279,
+    bulk_modulus=392e3,
+    poisson_ratio=0.2,
+    grain_density=2450.0,
+    grain_diameter=0.005,
+)
+
+LAW = Law(
+    name="mu_i_lc",
+    summary="mu(I) rheology with linear compression and an elastic predictor, so that it can rest",
+    parameters=Parameters,
+    state=State,
+    initial_state=initial_state,
+    update=update,
+    sound_speed=sound_speed,
+    parameter_sets={
+        "paper": ParameterSet(PAPER, "Table 1; nu as for Cam Clay", density_of_table_1),
+        "published_figure": ParameterSet(
+            PAPER._replace(dynamic_friction=2.16 * math.sqrt(3.0), inertial_number_constant=2.0 * 0.279),
+            "what the published Figure 1 was made with: mu_d = sqrt(3) M_d, and I_0 counted in the engineering rate",
+            density_of_table_1,
+        ),
+    },
+)
+
+
+@hookimpl
+def grainlaw_materials() -> list[Any]:
+    """Register this law."""
+    return [LAW]

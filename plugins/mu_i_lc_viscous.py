@@ -1,0 +1,134 @@
+"""mu(I)-LC rheology as published: a regularised viscosity without elasticity in shear.
+
+    p   = K_LC (phi/phi_ref - 1), stress-free where phi <= phi_ref                           (paper Eq. 6)
+    s   = eta D_d                                                                            (paper Eq. 3)
+    eta = mu_0 p / sqrt(gamma_dot^2 + alpha^2) + (mu_d - mu_0) p d_p / (I_0 sqrt(p/rho_p) + d_p gamma_dot)    (Eq. 5)
+
+The printed Eq. 5 lacks d_p in the numerator and has d_p gamma_dot under the root; this form has the dimension of a
+viscosity and returns Eqs. 2 and 4 at alpha = 0.
+
+Near rest eta ~ mu_0 p/alpha, whose explicit step limit is far below the elastic one that `sound_speed` sets. The stress of
+slow points then chatters between the signs of the yield stress and a pile creeps for ever: this law is here to be
+compared with, `mu_i_lc` is the one to use.
+
+Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", Eqs. 1-6, Table 1;
+regularisation after Franci & Cremonesi (2019).
+Conventions and range of validity: as `mu_i_lc`.
+"""
+
+import math
+from typing import Annotated, Any, NamedTuple
+
+from materials import (
+    Law,
+    Parameter,
+    ParameterSet,
+    StateVariable,
+    SymmetricTensor,
+    assembled_stress,
+    deviator,
+    half_norm,
+    hookimpl,
+    longitudinal_wave_speed,
+    pressure,
+    scaled,
+)
+
+
+class Parameters(NamedTuple):
+    """Material constants."""
+
+    static_friction: Annotated[float, Parameter("1", "friction coefficient mu_0 of slow flow, M/sqrt(3)", "[0, inf)")]
+    dynamic_friction: Annotated[
+        float, Parameter("1", "friction coefficient mu_d of fast flow, M_d/sqrt(3)", "[0, inf)")
+    ]
+    inertial_number_constant: Annotated[
+        float, Parameter("1", "I_0, where mu is halfway from mu_0 to mu_d; for the rate sqrt(1/2 D_d:D_d)", "(0, inf)")
+    ]
+    bulk_modulus: Annotated[float, Parameter("Pa", "bulk modulus K_LC of the linear compression law", "(0, inf)")]
+    regularisation_rate: Annotated[
+        float, Parameter("1/s", "rate alpha below which the viscosity saturates", "[0, inf)")
+    ]
+    grain_density: Annotated[float, Parameter("kg/m3", "density rho_p of the grains", "(0, inf)")]
+    grain_diameter: Annotated[float, Parameter("m", "diameter d_p of the grains", "(0, inf)")]
+
+
+class State(NamedTuple):
+    """What a point remembers."""
+
+    reference_solid_fraction: Annotated[
+        float, StateVariable("1", "solid fraction phi_ref at which the grains lose contact", output=False)
+    ]
+
+
+def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
+    """The reference solid fraction at which Eq. 6 returns the present pressure."""
+    solid_fraction = density / parameters.grain_density
+    return State(solid_fraction / (1.0 + max(0.0, pressure(stress)) / parameters.bulk_modulus))
+
+
+def update(
+    stress: SymmetricTensor,
+    strain_rate: SymmetricTensor,
+    density: float,
+    state: State,
+    parameters: Parameters,
+    dt: float,
+) -> tuple[SymmetricTensor, State]:
+    """Linear compression and s = eta D_d."""
+    solid_fraction = density / parameters.grain_density
+    p = max(0.0, parameters.bulk_modulus * (solid_fraction / state.reference_solid_fraction - 1.0))
+    rate_tensor = deviator(strain_rate)
+    rate = half_norm(rate_tensor)
+
+    friction_rate = math.sqrt(rate * rate + parameters.regularisation_rate * parameters.regularisation_rate)
+    inertial_rate = parameters.inertial_number_constant * math.sqrt(p / parameters.grain_density)
+    inertial_rate += parameters.grain_diameter * rate
+    viscosity = 0.0
+    if friction_rate > 0.0 and inertial_rate > 0.0:
+        extra_friction = parameters.dynamic_friction - parameters.static_friction
+        viscosity = parameters.static_friction * p / friction_rate
+        viscosity += extra_friction * p * parameters.grain_diameter / inertial_rate
+    return assembled_stress(p, scaled(rate_tensor, viscosity)), state
+
+
+def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Speed of compression waves; the viscous step limit is not covered (see the header)."""
+    return longitudinal_wave_speed(parameters.bulk_modulus, 0.0, density)
+
+
+def density_of_table_1(mean_pressure: float, parameters: Parameters) -> float:
+    """Bulk density [kg/m3] with Table 1's phi_ref = 1.317 (see `mu_i_lc`)."""
+    return 1.317 * parameters.grain_density * (1.0 + mean_pressure / parameters.bulk_modulus)
+
+
+LAW = Law(
+    name="mu_i_lc_viscous",
+    summary="mu(I) rheology with linear compression and regularised viscosity, explicit as published; creeps at rest",
+    parameters=Parameters,
+    state=State,
+    initial_state=initial_state,
+    update=update,
+    sound_speed=sound_speed,
+    parameter_sets={
+        "paper": ParameterSet(
+            Parameters(
+                static_friction=1.20 / math.sqrt(3.0),
+                dynamic_friction=2.16 / math.sqrt(3.0),
+                inertial_number_constant=0.279,
+                bulk_modulus=392e3,
+                regularisation_rate=1e-4,
+                grain_density=2450.0,
+                grain_diameter=0.005,
+            ),
+            "Table 1; alpha from the text",
+            density_of_table_1,
+        )
+    },
+)
+
+
+@hookimpl
+def grainlaw_materials() -> list[Any]:
+    """Register this law."""
+    return [LAW]
