@@ -70,6 +70,12 @@ def _source_files(functions: Iterable[Callable[..., Any]]) -> set[Path]:
     return files
 
 
+def registered(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function marked with `pointwise`, made callable from compiled code."""
+    _register_helpers()
+    return _register_marked(function)
+
+
 def pointwise_law(law: Law) -> PointwiseLaw:
     """The functions of a law, registered with the compiler."""
     return _pointwise_law(law.name, law.initial_state, law.update, law.sound_speed)

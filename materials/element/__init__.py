@@ -1,0 +1,1 @@
+"""Homogeneous element tests: one point of a law, led along a path of strain rates and held stresses."""

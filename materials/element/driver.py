@@ -1,0 +1,91 @@
+"""The compiled driver: one point of a law led along a loading path, with the control solved inside the loop.
+
+The driver works in the co-rotated frame: there is no spin, and the components of stress and strain refer to axes that
+turn with the material. Strain is the time integral of D (logarithmic); density follows from it exactly,
+rho_{n+1} = rho_n exp(-tr D dt), that is d(ln v) = tr D dt.
+"""
+
+import hashlib
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numba.extending import register_jitable
+
+from materials.compilation import PointwiseLaw, explained, pointwise_law
+from materials.element import search as search_module
+from materials.element.path import LoadingPath
+from materials.element.point import Point
+from materials.element.search import narrowed, search_from
+from materials.element.specimen import Specimen
+from materials.errors import SimulationError
+from materials.tensor import added, contraction, scaled, trace
+
+# Relative to the target: 1e-7 Pa at 1000 Pa, still far above the round-off of a law that is stiff in the density.
+CONTROL_TOLERANCE = 1e-10
+MAXIMUM_ITERATIONS = 200
+
+register_jitable(search_from)
+register_jitable(narrowed)
+
+
+def make_advance(law: PointwiseLaw) -> Any:
+    """The compiled loop over the steps of a path, for one law.
+
+    advance(point, parameters, dt, rates, direction, free, held, target, rate_scale) -> (point, steps done); it stops
+    before the first step whose control does not converge.
+    """
+    update, source_hash = law.update, law.source_hash
+    # The search lives in another file than the loop, whose cached code must not outlive a change there.
+    search_hash = int.from_bytes(hashlib.sha256(Path(search_module.__file__).read_bytes()).digest()[:7], "big")
+
+    @njit(cache=True)
+    def advance(point, parameters, dt, rates, direction, free, held, target, rate_scale):  # type: ignore[no-untyped-def]
+        assert source_hash
+        assert search_hash
+        is_controlled = contraction(free, free) > 0.0
+        tolerance = CONTROL_TOLERANCE * abs(target)
+        for step in range(rates.size):
+            prescribed = scaled(direction, rates[step])
+            search = search_from(point.search.x, point.search.slope, rate_scale)
+            for _ in range(MAXIMUM_ITERATIONS):
+                strain_rate = added(prescribed, scaled(free, search.x))
+                density = point.density * math.exp(-trace(strain_rate) * dt)
+                stress, state = update(point.stress, strain_rate, density, point.state, parameters, dt)
+                residual = contraction(held, stress) - target
+                if not is_controlled or not abs(residual) > tolerance:
+                    break
+                search = narrowed(search, residual)
+            if is_controlled and not abs(residual) <= tolerance:
+                return point, step
+            strain = added(point.strain, scaled(strain_rate, dt))
+            point = Point(point.time, stress, strain, strain_rate, density, state, search)
+        return point, rates.size
+
+    return advance
+
+
+def follow_path(specimen: Specimen, path: LoadingPath, point: Point, stride: int) -> Iterator[Point]:
+    """The point after every `stride` steps of a path and after the last one.
+
+    Raises SimulationError, with the time, if a held stress cannot be reached or the stress is not finite.
+    """
+    advance = make_advance(pointwise_law(specimen.law))
+    control = (path.direction, path.free, path.held, path.target, float(np.max(np.abs(path.rates))))
+    for start in range(0, path.steps, stride):
+        rates = path.rates[start : start + stride]
+        point, done = explained(specimen.law, advance, point, specimen.parameters, path.dt, rates, *control)
+        step = start + done
+        point = point._replace(time=step * path.dt)
+        if done < rates.size:
+            reached = contraction(path.held, point.stress)
+            raise SimulationError(
+                f"{specimen.law.name}: the {path.held_name} cannot be held in step {step + 1} "
+                f"(t = {(step + 1) * path.dt:g} s); before it, the value is {reached:g} Pa of {path.target:g} Pa"
+            )
+        if not np.all(np.isfinite(point.stress)):
+            raise SimulationError(f"{specimen.law.name}: stress not finite at step {step} (t = {point.time:g} s)")
+        yield point

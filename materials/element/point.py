@@ -1,0 +1,28 @@
+"""A material point between two steps of an element test."""
+
+from typing import Any, NamedTuple
+
+from materials.element.search import Search, search_from
+from materials.tensor import SymmetricTensor, isotropic
+
+
+class Point(NamedTuple):
+    """Stress [Pa], strain, strain rate [1/s], density [kg/m3] and the law's state at a time [s].
+
+    `strain_rate` is that of the step that led here. `search` is kept because the solution of one step is the best first
+    guess in the next.
+    """
+
+    time: float
+    stress: SymmetricTensor
+    strain: SymmetricTensor
+    strain_rate: SymmetricTensor
+    density: float
+    state: Any
+    search: Search
+
+
+def point_at_rest(stress: SymmetricTensor, density: float, state: Any) -> Point:
+    """The point at time 0, without strain."""
+    nothing = isotropic(0.0)
+    return Point(0.0, stress, nothing, nothing, density, state, search_from(0.0, 0.0, 0.0))

@@ -1,0 +1,90 @@
+"""The specimen of an element test: a law with its parameter values, where they came from, and its density at rest."""
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from materials.declarations import checked_parameters
+from materials.element.settings import ElementTest
+from materials.errors import InputError, nearest_name
+from materials.law import Law
+from materials.registry import get_material
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """A law, its parameter values (the law's NamedTuple) and a line that says where they came from."""
+
+    law: Law
+    parameters: Any
+    source: str
+
+    def density(self, pressure: float, stated: float) -> float:
+        """The stated initial bulk density [kg/m3] or, if that is 0, the one of the law's first set at the pressure."""
+        if stated > 0.0:
+            return stated
+        if not self.law.parameter_sets:
+            raise InputError(f"{self.law.name} has no named parameter set to take a density from; set density [kg/m3]")
+        return next(iter(self.law.parameter_sets.values())).density(pressure, self.parameters)
+
+    def declared(self, name: str, otherwise: float) -> float:
+        """A parameter if the law declares it, else the other value."""
+        return float(getattr(self.parameters, name, otherwise))
+
+
+def prepared(
+    law_name: str, parameters: str | Path | None, assignments: Mapping[str, float], test: ElementTest
+) -> tuple[Specimen, Any]:
+    """The specimen and the settings of a test.
+
+    parameters   name of one of the law's parameter sets, or the path of a TOML file; None takes the law's first set
+    assignments  values by name, each a parameter of the law or, where it has none of that name, a setting of the test
+
+    Raises InputError for an unknown law, set, file or name and for a value out of bounds.
+    """
+    law = get_material(law_name)
+    values, source = _base_values(law, parameters)
+    of_law, of_test = _sorted_out(law, test, assignments)
+    if of_law:
+        source += " with " + ", ".join(f"{name} = {value:g}" for name, value in of_law.items())
+    specimen = Specimen(law, checked_parameters(law.name, law.parameters, {**values, **of_law}), source)
+    shared = {name: getattr(specimen.parameters, name) for name in test.settings._fields if name in values | of_law}
+    return specimen, checked_parameters(test.name, test.settings, {**of_test, **shared})
+
+
+def _base_values(law: Law, parameters: str | Path | None) -> tuple[dict[str, Any], str]:
+    if parameters is None:
+        if not law.parameter_sets:
+            return {}, "values given one by one"
+        parameters = next(iter(law.parameter_sets))
+    if str(parameters).endswith(".toml"):
+        return _read_values(Path(parameters)), f"file {parameters}"
+    name = str(parameters)
+    if name not in law.parameter_sets:
+        raise InputError(f"{law.name} has no parameter set '{name}'; {nearest_name(name, law.parameter_sets)}")
+    found = law.parameter_sets[name]
+    return found.parameters._asdict(), f"set '{name}' ({found.source})"
+
+
+def _read_values(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text())
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InputError(f"parameter file {path} cannot be read: {error}") from error
+
+
+def _sorted_out(
+    law: Law, test: ElementTest, assignments: Mapping[str, float]
+) -> tuple[dict[str, float], dict[str, float]]:
+    """The assignments that belong to the law and those that belong to the test."""
+    of_law, of_test = law.parameter_declarations, test.setting_declarations
+    for name in assignments:
+        if name not in of_law and name not in of_test:
+            hint = nearest_name(name, {**of_law, **of_test})
+            raise InputError(f"neither {law.name} nor the element test {test.name} has '{name}'; {hint}")
+    return (
+        {name: value for name, value in assignments.items() if name in of_law},
+        {name: value for name, value in assignments.items() if name not in of_law},
+    )

@@ -1,0 +1,97 @@
+"""Following a mixed control: in every step SciPy finds the strain rates behind the prescribed stresses.
+
+Frame and density are as in `driver`.
+"""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import root
+
+from materials.compilation import explained, make_single_step, pointwise_law
+from materials.element.mixed import MixedControl, Stage
+from materials.element.path import steps_of
+from materials.element.point import Point
+from materials.element.specimen import Specimen
+from materials.errors import SimulationError
+from materials.tensor import SymmetricTensor, added, scaled, trace
+
+# Relative to the largest initial or prescribed stress component.
+STRESS_TOLERANCE = 1e-8
+
+Array = NDArray[np.float64]
+
+
+def follow_stages(specimen: Specimen, control: MixedControl, point: Point, stride: int) -> Iterator[Point]:
+    """The point after every `stride` steps of the stages and after the last one.
+
+    Raises SimulationError, with the time, if a prescribed stress cannot be reached.
+    """
+    solver = StageSolver(specimen, control.time_step, point)
+    step = 0
+    for stage in control.stage:
+        start, guess = np.array(point.stress), np.zeros(len(stage.stress_rate))
+        for n in range(1, steps_of(stage.duration, control.time_step) + 1):
+            step += 1
+            target = start[stage.controlled] + n * control.time_step * np.array(list(stage.stress_rate.values()))
+            point, guess = solver.advanced(point, stage, target, guess)
+            point = point._replace(time=step * control.time_step)
+            if step % stride == 0 or step == control.steps:
+                yield point
+
+
+class StageSolver:
+    """One step of mixed control of a specimen, with scales taken from its initial state."""
+
+    def __init__(self, specimen: Specimen, dt: float, point: Point) -> None:
+        self.law, self.parameters, self.dt = specimen.law, specimen.parameters, dt
+        self.single_step = make_single_step(pointwise_law(specimen.law))
+        self.stress_scale = float(np.max(np.abs(point.stress)))
+        speed = specimen.law.sound_speed(point.stress, point.density, point.state, specimen.parameters)
+        self.modulus = point.density * speed * speed
+
+    def advanced(self, point: Point, stage: Stage, target: Array, guess: Array) -> tuple[Point, Array]:
+        """The point one step later, and its unknown strain rates over their scale, the first guess of the next step."""
+        if not stage.controlled:
+            return self._moved(point, stage.prescribed), guess
+        rate_scale = self._rate_scale(stage)
+
+        def trial(unknown: Array) -> Point:
+            rates = np.array(stage.prescribed)
+            rates[stage.controlled] = unknown * rate_scale
+            return self._moved(point, SymmetricTensor(*rates.tolist()))
+
+        def residual(unknown: Array) -> Array:
+            stress = np.array(trial(unknown).stress)[stage.controlled]
+            return (stress - target) / (self.modulus * rate_scale * self.dt)
+
+        found = root(residual, guess, options={"xtol": 1e-10}).x
+        reached = trial(found)
+        self._check(reached, stage, target, point.time + self.dt)
+        return reached, found
+
+    def _moved(self, point: Point, strain_rate: SymmetricTensor) -> Point:
+        density = point.density * math.exp(-trace(strain_rate) * self.dt)
+        stress, state = explained(
+            self.law, self.single_step, point.stress, strain_rate, density, point.state, self.parameters, self.dt
+        )
+        strain = added(point.strain, scaled(strain_rate, self.dt))
+        return Point(point.time, stress, strain, strain_rate, density, state, point.search)
+
+    def _rate_scale(self, stage: Stage) -> float:
+        """A strain rate [1/s] of the size that the stage will see."""
+        strain_rates = [abs(rate) for rate in stage.strain_rate.values()]
+        elastic_rates = [abs(rate) / self.modulus for rate in stage.stress_rate.values()]
+        return max(strain_rates + elastic_rates) or 1.0 / stage.duration
+
+    def _check(self, reached: Point, stage: Stage, target: Array, time: float) -> None:
+        errors = np.abs(np.array(reached.stress)[stage.controlled] - target)
+        allowed = STRESS_TOLERANCE * max(self.stress_scale, float(np.max(np.abs(target))))
+        for component, error in zip(stage.stress_rate, errors, strict=True):
+            if not error <= allowed:
+                raise SimulationError(
+                    f"{self.law.name}: stress_{component} cannot follow its control at t = {time:g} s "
+                    f"(step {round(time / self.dt)}); it is {error:g} Pa off"
+                )

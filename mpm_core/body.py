@@ -1,0 +1,140 @@
+"""A body: the points of one material, their law, and the kernels that were chosen for them."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from materials import InputError, SymmetricTensor
+from materials.compilation import explained, pointwise_law
+from materials.law import Law
+from mpm_core.basis import Basis
+from mpm_core.columns import DENSITY, FIRST_STATE, SXX, SXY, SYY, SZZ, VX, VY, X, Y, allocate
+from mpm_core.grid import Grid, Window
+from mpm_core.sorting import balanced_chunks, sort_by_stencil
+from mpm_core.stress import REPORTS as STRESS_REPORTS
+from mpm_core.stress import make_stress_pass
+from mpm_core.transfer import BLOCK, make_grid_to_points, make_points_to_grid
+from mpm_core.transfer import REPORTS as TRANSFER_REPORTS
+
+
+class Body:
+    """Points as rows of `points`, shape (columns, n); `ids` gives each point's number in the order of generation."""
+
+    def __init__(
+        self,
+        name: str,
+        law: Law,
+        parameters: Any,
+        points: NDArray[np.float64],
+        point_mass: float,
+        first_id: int,
+    ) -> None:
+        self.name = name
+        self.law = law
+        self.parameters = parameters
+        self.points = points
+        self.point_mass = point_mass
+        self.initial_density = float(points[DENSITY, 0])
+        self.ids = np.arange(first_id, first_id + points.shape[1])
+        self.stripe_starts = np.zeros(1, np.int64)
+        self.chunks = np.zeros(1, np.int64)
+        blocks = -(-points.shape[1] // BLOCK)
+        self.transfer_reports = np.zeros((blocks, TRANSFER_REPORTS))
+        self.stress_reports = np.zeros((blocks, STRESS_REPORTS))
+        self._points_to_grid: Callable[..., Any]
+        self._grid_to_points: Callable[..., Any]
+        self._stress_pass: Callable[..., Any]
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return self.points.shape[1]
+
+    def choose_kernels(self, basis: Basis, keeps_shear_strain: bool) -> None:
+        """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""
+        self._points_to_grid = make_points_to_grid(basis)
+        self._grid_to_points = make_grid_to_points(basis)
+        self._stress_pass = make_stress_pass(pointwise_law(self.law), self.law.state, keeps_shear_strain)
+        nothing = allocate(self.points.shape[0], 8)[:, :0]
+        explained(self.law, self._stress_pass, nothing, 1.0, self.parameters, 0.0, self.stress_reports[:0])
+
+    @property
+    def velocities(self) -> NDArray[np.float64]:
+        """Velocity components, shape (2, n) [m/s]."""
+        return self.points[VX : VY + 1]
+
+    def largest_signal_speed(self) -> float:
+        """The largest sum of sound speed and point speed [m/s], in plain Python over the distinct states."""
+        rows = np.vstack([self.points[[SXX, SYY, SZZ, SXY, DENSITY]], self.points[FIRST_STATE:]])
+        fastest = 0.0
+        for xx, yy, zz, xy, density, *state in np.unique(rows.T, axis=0).tolist():
+            stress = SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0)
+            fastest = max(fastest, self.law.sound_speed(stress, density, self.law.state(*state), self.parameters))
+        return fastest + float(np.sqrt((self.velocities**2).sum(axis=0).max()))
+
+    def corners(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Lower and upper corner of the points' bounding box [m]."""
+        x, y = self.points[X], self.points[Y]
+        return (float(x.min()), float(y.min())), (float(x.max()), float(y.max()))
+
+    def sort(self, grid: Grid, basis: Basis, window: Window, threads: int) -> None:
+        """Bring the points into the order of their stencils and cut them into stripes."""
+        order, self.stripe_starts = sort_by_stencil(self.points, grid.origin, grid.cell_size, basis.offset, window)
+        for column in self.points:
+            column[:] = column[order]
+        self.ids = self.ids[order]
+        self.share_between(threads)
+
+    def share_between(self, threads: int) -> None:
+        """Cut the stripes into one run per thread."""
+        self.chunks = balanced_chunks(self.stripe_starts, threads)
+
+    def to_grid(self, grid: Grid) -> None:
+        """Scatter mass, momentum and internal force."""
+        for parity in (0, 1):
+            self._points_to_grid(
+                self.points,
+                self.point_mass,
+                self.stripe_starts,
+                self.chunks,
+                parity,
+                grid.nodes,
+                grid.shape[1],
+                grid.ghosts,
+                *grid.origin,
+                grid.cell_size,
+            )
+
+    def from_grid(self, grid: Grid, dt: float, memory: float) -> None:
+        """Gather velocity and its gradient, move the points."""
+        self._grid_to_points(
+            self.points,
+            self.point_mass,
+            grid.nodes,
+            grid.shape[1],
+            grid.ghosts,
+            *grid.origin,
+            grid.cell_size,
+            dt,
+            memory,
+            self.transfer_reports,
+        )
+
+    def wrap(self, axis: int, lower: float, period: float) -> None:
+        """Bring points that left through a periodic side back in through the other."""
+        coordinate = self.points[(X, Y)[axis]]
+        coordinate[:] = lower + np.mod(coordinate - lower, period)
+
+    def update_stress(self, dt: float) -> None:
+        """Rotate the stress, bring the density forward, call the law."""
+        self._stress_pass(self.points, self.point_mass, self.parameters, dt, self.stress_reports)
+
+    def state(self, name: str) -> NDArray[np.float64]:
+        """A state variable of all points, in their present order. Raises InputError for an unknown name."""
+        fields = self.law.state._fields
+        if name not in fields:
+            raise InputError(f"law {self.law.name} has no state variable '{name}'")
+        column: NDArray[np.float64] = self.points[FIRST_STATE + fields.index(name)]
+        return column

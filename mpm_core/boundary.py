@@ -1,0 +1,106 @@
+"""Walls on the sides of the domain, and periodic sides.
+
+A wall lies on a line of nodes. The shape functions interpolate there (see `basis`), so that the velocity of the wall row is
+the velocity of the material at the wall, and all that a wall does is done to that row.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mpm_core.grid import COMPONENTS, GHOSTS, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, Grid, Window
+
+
+class WallKind(IntEnum):
+    """What a wall does to the velocity of the material at it."""
+
+    FREE_SLIP = 0
+    NO_SLIP = 1
+    FRICTION = 2
+
+
+SIDES = ("left", "right", "bottom", "top")
+
+
+@dataclass(frozen=True)
+class Wall:
+    """One side of the domain. A friction wall is unilateral: material may leave it; the others hold it."""
+
+    side: str
+    kind: WallKind
+    coefficient: float = 0.0
+
+    @property
+    def axis(self) -> int:
+        """0 for the left and right sides, 1 for bottom and top."""
+        return 0 if self.side in ("left", "right") else 1
+
+    @property
+    def is_lower(self) -> bool:
+        """Whether the domain lies on the positive side of the wall."""
+        return self.side in ("left", "bottom")
+
+
+def hold_at_wall(grid: Grid, wall: Wall, window: Window) -> float:
+    """Apply a wall to the new velocities of its row of nodes. Returns the energy that the wall takes [J/m].
+
+    Energy is counted as impulse times the mean of old and new velocity, which is zero for what stays at rest.
+    """
+    index = GHOSTS if wall.is_lower else grid.cells[wall.axis] + GHOSTS
+    first, last = (window.first_x, window.first_y), (window.last_x, window.last_y)
+    if not first[wall.axis] <= index <= last[wall.axis]:
+        return 0.0
+    strides = (grid.shape[1] * COMPONENTS, COMPONENTS)
+    other = 1 - wall.axis
+    start = index * strides[wall.axis] + first[other] * strides[other]
+    count = last[other] - first[other] + 1
+    sign = 1.0 if wall.is_lower else -1.0
+    return float(_hold(grid.nodes, start, strides[other], count, wall.axis, sign, int(wall.kind), wall.coefficient))
+
+
+@njit(cache=True)
+def _hold(nodes, start, along, count, axis, sign, kind, friction):  # type: ignore[no-untyped-def]
+    taken = 0.0
+    for k in range(count):
+        node = start + k * along
+        mass = nodes[node + MASS]
+        if mass <= 0.0:
+            continue
+        free_normal, free_tangential = nodes[node + NEW_VX + axis], nodes[node + NEW_VY - axis]
+        normal, tangential = free_normal, free_tangential
+        approach = max(0.0, -sign * normal)
+        if kind == WallKind.NO_SLIP:
+            normal, tangential = 0.0, 0.0
+        elif kind == WallKind.FREE_SLIP:
+            normal = 0.0
+        elif approach > 0.0:
+            normal = 0.0
+            tangential = np.copysign(max(0.0, abs(tangential) - friction * approach), tangential)
+        nodes[node + NEW_VX + axis] = normal
+        nodes[node + NEW_VY - axis] = tangential
+        old_normal, old_tangential = nodes[node + OLD_VX + axis], nodes[node + OLD_VY - axis]
+        taken += 0.5 * mass * (free_normal - normal) * (old_normal + normal)
+        taken += 0.5 * mass * (free_tangential - tangential) * (old_tangential + tangential)
+    return taken
+
+
+def join_periodic(nodes: NDArray[np.float64], grid: Grid, axis: int) -> None:
+    """Add up the nodes that are one and the same across a periodic axis, and give all copies the sum."""
+    step_x, step_y = grid.shape[1] * COMPONENTS, COMPONENTS
+    across, along = (step_x, step_y) if axis == 0 else (step_y, step_x)
+    _join(nodes, across, along, grid.shape[axis], grid.shape[1 - axis], grid.cells[axis])
+
+
+@njit(cache=True)
+def _join(nodes, across, along, rows, count, period):  # type: ignore[no-untyped-def]
+    for low in range(rows - period):
+        for k in range(count):
+            a = low * across + k * along
+            b = a + period * across
+            for c in range(COMPONENTS):
+                total = nodes[a + c] + nodes[b + c]
+                nodes[a + c] = total
+                nodes[b + c] = total

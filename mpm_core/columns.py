@@ -1,0 +1,27 @@
+"""The columns of the point array: one contiguous row of memory per quantity, the same order for every law.
+
+The law's state variables follow after `FIRST_STATE`, in the order of its declaration.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+X, Y = 0, 1
+VX, VY = 2, 3
+LXX, LXY, LYX, LYY = 4, 5, 6, 7
+SXX, SYY, SZZ, SXY = 8, 9, 10, 11
+DENSITY = 12
+SHEAR_STRAIN = 13
+FIRST_STATE = 14
+
+CACHE_LINE = 8
+
+
+def allocate(columns: int, points: int) -> NDArray[np.float64]:
+    """A zeroed (columns, points) array whose rows do not fall on the same cache sets.
+
+    Rows a multiple of 4096 bytes apart would evict one another; an odd number of cache lines between them cannot.
+    """
+    lines = -(-points // CACHE_LINE)
+    lines += 1 - lines % 2
+    return np.zeros((columns, lines * CACHE_LINE))[:, :points]

@@ -1,0 +1,61 @@
+"""The background grid: one flat array of nodes, of which only the window around the material is ever touched."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+# Components of a node. Before the momentum update: mass, momentum, force; after it: mass, new and old velocity.
+MASS = 0
+PX, PY, FX, FY = 1, 2, 3, 4
+NEW_VX, NEW_VY, OLD_VX, OLD_VY = 1, 2, 3, 4
+COMPONENTS = 5
+
+# Nodes beyond each side of the domain, enough for the widest stencil of a point that touches a wall.
+GHOSTS = 2
+NO_NODE = -1
+
+
+@dataclass(frozen=True)
+class Window:
+    """Inclusive ranges of node indices along x and y."""
+
+    first_x: int
+    last_x: int
+    first_y: int
+    last_y: int
+
+
+class Grid:
+    """A rectangle of `cells` square cells of `cell_size` [m] whose lower corner is `lower` [m].
+
+    Memory is reserved for the whole domain but, being zero until written, occupied only where material has been.
+    """
+
+    def __init__(
+        self,
+        lower: tuple[float, float],
+        cells: tuple[int, int],
+        cell_size: float,
+        periodic_axes: Sequence[int] = (),
+    ) -> None:
+        self.lower = lower
+        self.cells = cells
+        self.cell_size = cell_size
+        self.upper = (lower[0] + cells[0] * cell_size, lower[1] + cells[1] * cell_size)
+        self.shape = (cells[0] + 1 + 2 * GHOSTS, cells[1] + 1 + 2 * GHOSTS)
+        self.nodes: NDArray[np.float64] = np.zeros(self.shape[0] * self.shape[1] * COMPONENTS)
+        # The nodes just beyond the walls, whose velocity is tied to the inside; no node where the axis is periodic.
+        walls = [(NO_NODE, NO_NODE) if axis in periodic_axes else self._ghosts(axis) for axis in (0, 1)]
+        self.ghosts = (*walls[0], *walls[1])
+        self.origin = (lower[0] - GHOSTS * cell_size, lower[1] - GHOSTS * cell_size)
+
+    def _ghosts(self, axis: int) -> tuple[int, int]:
+        return GHOSTS - 1, GHOSTS + self.cells[axis] + 1
+
+    def window(self, lower: tuple[float, float], upper: tuple[float, float], offset: float, width: int) -> Window:
+        """The nodes that points between two corners [m] reach with a stencil of the given offset and width."""
+        first = [int((lower[axis] - self.origin[axis]) / self.cell_size - offset) for axis in (0, 1)]
+        last = [int((upper[axis] - self.origin[axis]) / self.cell_size - offset) + width - 1 for axis in (0, 1)]
+        return Window(first[0], last[0], first[1], last[1])

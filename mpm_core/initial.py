@@ -1,0 +1,94 @@
+"""Building the bodies of a scene: points, mass, stress and the law's state in equilibrium with it."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from materials import InputError, SymmetricTensor
+from materials.law import Law
+from mpm_core.body import Body
+from mpm_core.columns import DENSITY, FIRST_STATE, SXX, SYY, SZZ, VX, VY, X, Y, allocate
+from mpm_core.scene import BodySection, InitialStressSection, Scene
+from mpm_core.shapes import lattice
+
+
+def build_bodies(scene: Scene) -> list[Body]:
+    """The bodies of a scene. Raises InputError for empty, overlapping or misplaced ones."""
+    bodies: list[Body] = []
+    positions = [_positions(scene, number, section) for number, section in enumerate(scene.body)]
+    _refuse_overlap(scene, positions)
+    first_id = 0
+    for number, section in enumerate(scene.body):
+        body = _build(scene, section, positions[number], f"body.{number}", first_id)
+        first_id += body.count
+        bodies.append(body)
+    return bodies
+
+
+def _positions(scene: Scene, number: int, section: BodySection) -> NDArray[np.float64]:
+    positions = lattice(section.shape, scene.grid.lower, scene.grid.cell_size, section.points_per_cell)
+    if len(positions) == 0:
+        raise InputError(f"body.{number}: the shape holds no point; it is smaller than a cell of the grid")
+    outside = ((positions < scene.grid.lower) | (positions > scene.grid.upper)).any(axis=1)
+    if outside.any():
+        x, y = positions[outside][0]
+        raise InputError(
+            f"body.{number}: {outside.sum()} of {len(positions)} points lie outside the domain "
+            f"{list(scene.grid.lower)} to {list(scene.grid.upper)}, the first at ({x:g}, {y:g})"
+        )
+    return positions
+
+
+def _refuse_overlap(scene: Scene, positions: list[NDArray[np.float64]]) -> None:
+    for second, section in enumerate(scene.body):
+        for first in range(second):
+            inside = section.shape.contains(positions[first])
+            if inside.any():
+                x, y = positions[first][inside][0]
+                raise InputError(f"body.{first} and body.{second} overlap, for instance at ({x:g}, {y:g})")
+
+
+def _build(scene: Scene, section: BodySection, positions: NDArray[np.float64], name: str, first_id: int) -> Body:
+    law = scene.law(section.material)
+    parameters = scene.parameters(section.material)
+    points = allocate(FIRST_STATE + len(law.state._fields), len(positions))
+    points[X], points[Y] = positions.T
+    points[VX], points[VY] = section.velocity
+    points[DENSITY] = section.density
+    spacing = scene.grid.cell_size / section.points_per_cell**0.5
+    weight = -section.density * scene.gravity[1]
+    points[SXX], points[SYY], points[SZZ] = _initial_stress(section.initial_stress, positions, spacing, weight)
+    _initialise_state(law, parameters, points)
+    return Body(name, law, parameters, points, section.density * spacing**2, first_id)
+
+
+def _initial_stress(
+    section: InitialStressSection, positions: NDArray[np.float64], spacing: float, weight: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Normal stresses [Pa] along x, y and z; `weight` is rho g downwards [N/m3]."""
+    if section.kind == "uniform":
+        pressure = np.full(len(positions), section.pressure)
+        return -pressure, -pressure, -pressure
+    if section.kind == "geostatic":
+        vertical = -weight * _depth(positions, spacing)
+        horizontal = section.horizontal_ratio * vertical
+        return horizontal, vertical, section.out_of_plane_ratio * (horizontal + vertical)
+    nothing = np.zeros(len(positions))
+    return nothing, nothing, nothing
+
+
+def _depth(positions: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
+    """Depth of each lattice point below the top of its own column of points [m]."""
+    column = np.round((positions[:, 0] - positions[:, 0].min()) / spacing).astype(int)
+    top = np.full(column.max() + 1, -np.inf)
+    np.maximum.at(top, column, positions[:, 1])
+    return np.asarray(top[column] + 0.5 * spacing - positions[:, 1])
+
+
+def _initialise_state(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64]) -> None:
+    """Fill the law's state columns, one call for each distinct initial stress."""
+    stresses = np.column_stack([points[SXX], points[SYY], points[SZZ], points[DENSITY]])
+    distinct, which = np.unique(stresses, axis=0, return_inverse=True)
+    states = np.array(
+        [law.initial_state(SymmetricTensor(xx, yy, zz, 0.0, 0.0, 0.0), rho, parameters) for xx, yy, zz, rho in distinct]
+    )
+    points[FIRST_STATE:] = states[which].T.reshape(len(law.state._fields), -1)

@@ -1,0 +1,43 @@
+"""The momentum equation on the grid: m dv/dt = f + m g."""
+
+import numpy as np
+from numba import njit, prange
+
+from mpm_core.grid import COMPONENTS, FX, FY, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, PX, PY, Grid, Window
+
+
+def clear(grid: Grid, window: Window) -> None:
+    """Zero the nodes of a window."""
+    _clear(grid.nodes, grid.shape[1], window.first_x, window.last_x, window.first_y, window.last_y)
+
+
+def update_velocities(grid: Grid, window: Window, gravity: tuple[float, float], dt: float) -> None:
+    """Turn mass, momentum and force into the old velocity and the new one, v + dt (f/m + g) [m/s]."""
+    bounds = (window.first_x, window.last_x, window.first_y, window.last_y)
+    _update(grid.nodes, grid.shape[1], *bounds, dt * gravity[0], dt * gravity[1], dt)
+
+
+@njit(parallel=True, cache=True)
+def _clear(nodes, nodes_y, first_x, last_x, first_y, last_y):  # type: ignore[no-untyped-def]
+    for i in prange(first_x, last_x + 1):
+        start = (i * nodes_y + first_y) * COMPONENTS
+        nodes[start : (i * nodes_y + last_y + 1) * COMPONENTS] = 0.0
+
+
+@njit(parallel=True, error_model="numpy", cache=True)
+def _update(  # type: ignore[no-untyped-def]
+    nodes, nodes_y, first_x, last_x, first_y, last_y, gravity_impulse_x, gravity_impulse_y, dt
+):
+    for i in prange(first_x, last_x + 1):
+        for j in range(first_y, last_y + 1):
+            node = np.uint64((i * nodes_y + j) * COMPONENTS)
+            mass = nodes[node + np.uint64(MASS)]
+            if mass > 0.0:
+                old_x = nodes[node + np.uint64(PX)] / mass
+                old_y = nodes[node + np.uint64(PY)] / mass
+                new_x = old_x + dt * nodes[node + np.uint64(FX)] / mass + gravity_impulse_x
+                new_y = old_y + dt * nodes[node + np.uint64(FY)] / mass + gravity_impulse_y
+                nodes[node + np.uint64(NEW_VX)] = new_x
+                nodes[node + np.uint64(NEW_VY)] = new_y
+                nodes[node + np.uint64(OLD_VX)] = old_x
+                nodes[node + np.uint64(OLD_VY)] = old_y

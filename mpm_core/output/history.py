@@ -1,0 +1,106 @@
+"""`history.csv`: scalars of the whole run, one row per recorded step."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from materials import InputError
+from mpm_core.output import atomic
+
+HISTORY_NAME = "history.csv"
+
+
+@dataclass(frozen=True)
+class HistoryColumn:
+    """One column: name, SI unit, doc, and whether its values are whole numbers."""
+
+    name: str
+    unit: str
+    doc: str
+    whole_number: bool = False
+
+
+HISTORY_COLUMNS = (
+    HistoryColumn("t", "s", "time"),
+    HistoryColumn("dt", "s", "time step"),
+    HistoryColumn("runout", "m", "half of the distance between the fronts"),
+    HistoryColumn("front_left", "m", "x to the left of which lies 1 % of the mass"),
+    HistoryColumn("front_right", "m", "x to the right of which lies 1 % of the mass"),
+    HistoryColumn("height", "m", "level above which lies one cell's worth of material, from the floor of the domain"),
+    HistoryColumn("center_of_mass_height", "m", "height of the centre of mass above the floor of the domain"),
+    HistoryColumn("kinetic_energy", "J/m", "kinetic energy per width"),
+    HistoryColumn("potential_energy", "J/m", "potential energy of gravity per width"),
+    HistoryColumn("internal_work", "J/m", "work of the stress per width since the start"),
+    HistoryColumn("friction_work", "J/m", "work done against boundary friction per width since the start"),
+    HistoryColumn("numerical_dissipation", "J/m", "energy lost in the transfers per width since the start"),
+    HistoryColumn("step", "1", "number of the step", whole_number=True),
+    HistoryColumn("wall_time", "s", "wall-clock time since the start of the run"),
+)
+_TYPES: dict[str, type] = {column.name: int if column.whole_number else float for column in HISTORY_COLUMNS}
+
+
+class HistoryWriter:
+    """Appends rows to `history.csv` of a run's folder; each row reaches the file before `append` returns."""
+
+    def __init__(self, folder: Path) -> None:
+        """Continue the history that the folder holds, or start one."""
+        path = folder / HISTORY_NAME
+        if not path.exists():
+            atomic.write_text(path, _line(column.name for column in HISTORY_COLUMNS))
+        self._file: TextIO = path.open("a", newline="")
+
+    def append(self, values: Mapping[str, float]) -> None:
+        """Append one row; `values` holds exactly the declared columns.
+
+        Raises ValueError naming the columns that are missing or not declared.
+        """
+        if values.keys() != _TYPES.keys():
+            raise ValueError(f"history row and declared columns differ in {sorted(values.keys() ^ _TYPES.keys())}")
+        self._file.write(_line(repr(kind(values[name])) for name, kind in _TYPES.items()))
+        self._file.flush()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+def drop_rows_after(folder: Path, step: int) -> None:
+    """Remove the rows later than `step`, that of the checkpoint from which the run resumes.
+
+    Raises InputError if the history is missing or cannot be read.
+    """
+    kept = int(np.count_nonzero(read_history(folder)["step"] <= step))
+    path = folder / HISTORY_NAME
+    atomic.write_text(path, "".join(_complete_lines(path)[: 1 + kept]))
+
+
+def read_history(folder: Path) -> NDArray[Any]:
+    """The history of a run's folder as a structured array of shape (rows,), one named field per column.
+
+    A last row that is still being written is left out. Raises InputError if the file is missing or cannot be read.
+    """
+    path = folder / HISTORY_NAME
+    if not path.is_file():
+        raise InputError(f"{folder} holds no {HISTORY_NAME}")
+    lines = _complete_lines(path)
+    if not lines:
+        raise InputError(f"{path} is empty")
+    dtype = np.dtype([(name, _TYPES.get(name, float)) for name in lines[0].strip().split(",")])
+    if len(lines) == 1:
+        return np.empty(0, dtype)
+    try:
+        return np.loadtxt(lines[1:], delimiter=",", dtype=dtype, ndmin=1)
+    except ValueError as error:
+        raise InputError(f"{path} cannot be read: {error}") from error
+
+
+def _line(entries: Iterable[str]) -> str:
+    return ",".join(entries) + "\n"
+
+
+def _complete_lines(path: Path) -> list[str]:
+    return [line for line in path.read_text().splitlines(keepends=True) if line.endswith("\n")]

@@ -1,0 +1,112 @@
+"""The pictures of a run: its last frame, its history and, where a body spread, its snapshots."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from matplotlib.axes import Axes
+
+from mpm_core.output.frame import Frame
+from mpm_core.output.history import HISTORY_COLUMNS
+from mpm_core.output.picture_style import (
+    PAPER_WIDTH,
+    color_bar,
+    color_scale,
+    field_label,
+    paper_picture,
+    quantity_label,
+    scalar_values,
+    time_label,
+)
+from mpm_core.output.point_image import bounding_box, draw_points, point_spacing, view_box
+from mpm_core.output.run_folder import RunFolder
+from mpm_core.output.snapshots import draw_snapshots
+
+_UNITS = {column.name: column.unit for column in HISTORY_COLUMNS}
+_ENERGIES = ("kinetic_energy", "potential_energy", "internal_work", "friction_work", "numerical_dissipation")
+_SPREADING = 1.1
+
+
+def draw_frame(
+    frame: Frame,
+    field: str,
+    path: Path,
+    limits: tuple[float, float] | None = None,
+    spacing: float | None = None,
+) -> None:
+    """Write a picture of one frame coloured by a field, a vector by its length.
+
+    `spacing` [m] is that of the points when they were generated; without it the present distances stand in.
+    Raises InputError if the frame does not hold the field.
+    """
+    shown = frame.field(field)
+    values = scalar_values(shown)
+    spacing = point_spacing(frame.positions) if spacing is None else spacing
+    box = view_box([bounding_box(frame.positions, spacing)])
+    with paper_picture(path, _height(box), "compressed") as figure:
+        axes = figure.subplots()
+        image = draw_points(axes, frame.positions, values, spacing, color_scale([values], limits))
+        axes.set(xlabel="$x$ [m]", ylabel="$y$ [m]", xlim=box[:2], ylim=box[2:], title=time_label(frame.time))
+        color_bar(figure, image, [axes], field_label(shown))
+
+
+def draw_history(runs: Sequence[tuple[str, RunFolder]], path: Path) -> None:
+    """Write a picture of runout, heights and energies over time: runs together above, energies of each run below.
+
+    Raises InputError if a run holds no history.
+    """
+    with paper_picture(path, 0.75 * PAPER_WIDTH, "constrained") as figure:
+        (above,), (below,) = figure.subfigures(2, 1, squeeze=False)
+        runout, heights = above.subplots(1, 2)
+        for label, run in runs:
+            _draw_shape(runout, heights, label, run)
+        runout.set(xlabel="$t$ [s]", ylabel=quantity_label("runout", _UNITS["runout"]))
+        runout.legend(fontsize="small", frameon=False)
+        shown = "height of top (full) and\ncentre of mass (dashed)"
+        heights.set(xlabel="$t$ [s]", ylabel=quantity_label(shown, _UNITS["height"]))
+        panels = below.subplots(1, len(runs), sharey=True, squeeze=False)[0]
+        for axes, (label, run) in zip(panels, runs, strict=True):
+            _draw_energies(axes, run)
+            axes.set_title(label)
+        panels[0].set_ylabel(quantity_label("energy since the start", _UNITS["kinetic_energy"]))
+        below.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=5, frameon=False)
+
+
+def write_run_pictures(folder: Path, field: str = "shear_strain") -> list[Path]:
+    """Write final.png, history.png and, if the runout grew by more than a tenth, snapshots.png; return their paths.
+
+    Without the field the pictures show the first one that the frames hold. Raises InputError if the folder lacks
+    frames or history, or if its frames hold no field.
+    """
+    run = RunFolder(folder)
+    last = run.load_frame(-1)
+    if field not in {held.name for held in last.fields} and last.fields:
+        field = last.fields[0].name
+    limits = (0.0, 3.0) if field == "shear_strain" else None
+    written = [folder / "final.png", folder / "history.png"]
+    draw_frame(last, field, written[0], limits, point_spacing(run.load_frame(0).positions))
+    draw_history([(folder.name, run)], written[1])
+    runout = run.history["runout"]
+    if runout.max() > _SPREADING * runout[0]:
+        written.append(folder / "snapshots.png")
+        draw_snapshots([(folder.name, run)], written[2], field, limits)
+    return written
+
+
+def _height(box: tuple[float, float, float, float]) -> float:
+    """Height of the figure [inch] in which equal axes fill the width, within what a page can hold."""
+    left, right, bottom, top = box
+    return min(max(0.85 * PAPER_WIDTH * (top - bottom) / (right - left) + 0.8, 1.8), PAPER_WIDTH)
+
+
+def _draw_shape(runout: Axes, heights: Axes, label: str, run: RunFolder) -> None:
+    time = run.history["t"]
+    (line,) = runout.plot(time, run.history["runout"], label=label)
+    heights.plot(time, run.history["height"], color=line.get_color())
+    heights.plot(time, run.history["center_of_mass_height"], "--", color=line.get_color())
+
+
+def _draw_energies(axes: Axes, run: RunFolder) -> None:
+    for name in _ENERGIES:
+        axes.plot(run.history["t"], run.history[name] - run.history[name][0], label=name.replace("_", " "))
+    axes.axhline(0.0, color="black", linewidth=0.5)
+    axes.set_xlabel("$t$ [s]")

@@ -1,0 +1,37 @@
+"""`quantities.csv`: name, unit and meaning of everything that the files of a run hold, one row per quantity.
+
+It is the place where a reader sees the units: ParaView, a spreadsheet and a text editor all open it, while the arrays
+and columns keep plain names.
+"""
+
+import csv
+import io
+from collections.abc import Iterable
+from pathlib import Path
+
+from mpm_core.output import atomic
+from mpm_core.output.frame import Field
+from mpm_core.output.history import HISTORY_COLUMNS, HISTORY_NAME
+
+QUANTITIES_NAME = "quantities.csv"
+POINT_FILES = "points_*.vtu"
+
+
+def write_quantities(folder: Path, fields: Iterable[Field]) -> None:
+    """Write the table for the given fields of the points and all columns of the history."""
+    table = io.StringIO(newline="")
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow(["file", "name", "unit", "doc"])
+    writer.writerows([POINT_FILES, field.name, field.unit, field.doc] for field in fields)
+    writer.writerows([HISTORY_NAME, column.name, column.unit, column.doc] for column in HISTORY_COLUMNS)
+    atomic.write_text(folder / QUANTITIES_NAME, table.getvalue())
+
+
+def read_field_documentation(folder: Path) -> dict[str, tuple[str, str]]:
+    """Unit and doc of each point field by its name; empty where the table is missing."""
+    path = folder / QUANTITIES_NAME
+    if not path.is_file():
+        return {}
+    with path.open(newline="") as table:
+        rows = [row for row in csv.DictReader(table) if row["file"] == POINT_FILES]
+    return {row["name"]: (row["unit"], row["doc"]) for row in rows}

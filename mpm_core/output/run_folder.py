@@ -1,0 +1,67 @@
+"""A run's folder opened for reading, finished or still running."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from materials import InputError
+from mpm_core.output.frame import Frame
+from mpm_core.output.frame_series import FrameFile, read_collection
+from mpm_core.output.history import read_history
+from mpm_core.output.quantities import read_field_documentation
+from mpm_core.output.summary import RunSummary, read_summary
+from mpm_core.output.vtu import read_vtu
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """What a run left in `path`; each part is read when it is first asked for.
+
+    Raises InputError if `path` is not a folder, and on access if the part is missing or broken.
+    """
+
+    path: Path
+
+    def __post_init__(self) -> None:
+        if not self.path.is_dir():
+            raise InputError(f"run folder {self.path} does not exist")
+
+    @cached_property
+    def frame_files(self) -> tuple[FrameFile, ...]:
+        """Time and path of each frame; at least one."""
+        files = read_collection(self.path)
+        if not files:
+            raise InputError(f"{self.path} holds no frame yet")
+        return files
+
+    @cached_property
+    def frame_times(self) -> NDArray[np.float64]:
+        """Times [s] of the frames, shape (frames,)."""
+        return np.array([file.time for file in self.frame_files])
+
+    @cached_property
+    def history(self) -> NDArray[Any]:
+        """The history as a structured array of shape (rows,); at least one row."""
+        history = read_history(self.path)
+        if not len(history):
+            raise InputError(f"the history of {self.path} holds no row yet")
+        return history
+
+    @cached_property
+    def summary(self) -> RunSummary:
+        """The summary of a finished run."""
+        return read_summary(self.path)
+
+    def load_frame(self, index: int) -> Frame:
+        """Frame number `index`; negative numbers count from the last frame.
+
+        Raises InputError if there is no such frame or its file is missing or broken.
+        """
+        count = len(self.frame_files)
+        if not -count <= index < count:
+            raise InputError(f"no frame {index} in {self.path}: allowed are 0 to {count - 1}")
+        return read_vtu(self.frame_files[index].path, read_field_documentation(self.path))

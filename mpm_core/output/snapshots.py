@@ -1,0 +1,100 @@
+"""The collapse of several columns side by side, as in Figure 2 of the paper: one row per run, one column per runout.
+
+The columns are taken at the normalised runout w_bar = (w - w0)/(w_max - w0), with w the runout of the history.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from materials import InputError
+from mpm_core.output.frame import Frame
+from mpm_core.output.picture_style import (
+    PAPER_WIDTH,
+    color_bar,
+    color_scale,
+    field_label,
+    paper_picture,
+    scalar_values,
+    time_label,
+)
+from mpm_core.output.point_image import ColorScale, bounding_box, draw_points, point_spacing, view_box
+from mpm_core.output.run_folder import RunFolder
+
+NORMALIZED_RUNOUTS = (0.1, 0.5, 1.0)
+
+
+@dataclass(frozen=True)
+class _Snapshot:
+    """A frame, its normalised runout and the spacing [m] of the points in the run's first frame."""
+
+    frame: Frame
+    normalized_runout: float
+    spacing: float
+
+
+def normalized_runout(run: RunFolder, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """w_bar at the given times [s], between the rows of the history by linear interpolation.
+
+    Raises InputError if the runout of the run never grew.
+    """
+    runout = run.history["runout"]
+    growth = runout.max() - runout[0]
+    if not growth > 0:
+        raise InputError(f"the runout of {run.path} never grew: there is no normalised runout to choose frames by")
+    return (np.interp(times, run.history["t"], runout) - runout[0]) / growth
+
+
+def draw_snapshots(
+    runs: Sequence[tuple[str, RunFolder]],
+    path: Path,
+    field: str = "shear_strain",
+    limits: tuple[float, float] | None = (0.0, 3.0),
+) -> None:
+    """Write the picture: a row for each (label, run), the frames nearest to w_bar = 0.1, 0.5 and 1.0.
+
+    Raises InputError if a run lacks frames, history or the field, or if its runout never grew.
+    """
+    rows = [(label, _snapshots(run)) for label, run in runs]
+    all_snapshots = [snapshot for _, row in rows for snapshot in row]
+    fields = [snapshot.frame.field(field) for snapshot in all_snapshots]
+    scale = color_scale([scalar_values(one) for one in fields], limits)
+    box = view_box([bounding_box(one.frame.positions, one.spacing) for one in all_snapshots])
+    with paper_picture(path, _height(len(rows), box), "compressed") as figure:
+        grid = figure.subplots(len(rows), len(NORMALIZED_RUNOUTS), sharex=True, sharey=True, squeeze=False)
+        for axes_row, (label, row) in zip(grid, rows, strict=True):
+            for axes, snapshot in zip(axes_row, row, strict=True):
+                _draw_snapshot(axes, snapshot, field, scale)
+            axes_row[0].set_ylabel(f"{label}\n$y$ [m]")
+        for axes, target in zip(grid[0], NORMALIZED_RUNOUTS, strict=True):
+            axes.set_title(rf"$\bar{{w}} \approx {target:.1f}$")
+        for axes in grid[-1]:
+            axes.set_xlabel("$x$ [m]")
+        grid[0, 0].set(xlim=box[:2], ylim=box[2:])
+        color_bar(figure, grid[0, 0].images[0], list(grid.flat), field_label(fields[0]))
+
+
+def _snapshots(run: RunFolder) -> list[_Snapshot]:
+    """The frames of one run that come nearest to the three normalised runouts."""
+    reached = normalized_runout(run, run.frame_times)
+    spacing = point_spacing(run.load_frame(0).positions)
+    chosen = [int(np.argmin(np.abs(reached - target))) for target in NORMALIZED_RUNOUTS]
+    return [_Snapshot(run.load_frame(index), float(reached[index]), spacing) for index in chosen]
+
+
+def _draw_snapshot(axes: Axes, snapshot: _Snapshot, field: str, scale: ColorScale) -> None:
+    frame = snapshot.frame
+    draw_points(axes, frame.positions, scalar_values(frame.field(field)), snapshot.spacing, scale)
+    note = rf"$\bar{{w}} = {snapshot.normalized_runout:.2f}$" + "\n" + time_label(frame.time)
+    axes.text(0.97, 0.94, note, transform=axes.transAxes, ha="right", va="top", fontsize="small")
+
+
+def _height(rows: int, box: tuple[float, float, float, float]) -> float:
+    """Height of the figure [inch] in which each row is as high as its equal axes need."""
+    axes_width = PAPER_WIDTH / (len(NORMALIZED_RUNOUTS) + 0.8)
+    axes_height = axes_width * (box[3] - box[2]) / (box[1] - box[0])
+    return rows * (axes_height + 0.1) + 0.7

@@ -1,0 +1,66 @@
+"""`summary.json`: what a finished run was, what it led to and what it cost."""
+
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, FiniteFloat, NonNegativeInt, ValidationError
+
+from materials import InputError
+from mpm_core.output import atomic
+
+SUMMARY_NAME = "summary.json"
+
+
+class FinalState(BaseModel):
+    """Runout [m], height [m], height of the centre of mass [m] and kinetic energy [J/m] at the end of the run."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    runout: FiniteFloat
+    height: FiniteFloat
+    center_of_mass_height: FiniteFloat
+    kinetic_energy: FiniteFloat
+
+
+class RunSummary(BaseModel):
+    """One run: times in seconds, memory in bytes, `energy_balance_error` relative to the energy that was released.
+
+    `material` names the law, or the laws of a scene with several, joined by commas.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    scene: str
+    material: str
+    points: NonNegativeInt
+    cells: NonNegativeInt
+    steps: NonNegativeInt
+    simulated_time: FiniteFloat
+    wall_time: FiniteFloat
+    compile_time: FiniteFloat
+    point_steps_per_second: FiniteFloat
+    peak_memory_bytes: NonNegativeInt
+    final: FinalState
+    energy_balance_error: FiniteFloat
+    threads: NonNegativeInt
+    version: str
+
+
+def write_summary(folder: Path, summary: RunSummary) -> None:
+    """Write the summary into a run's folder."""
+    atomic.write_text(folder / SUMMARY_NAME, summary.model_dump_json(indent=2) + "\n")
+
+
+def read_summary(folder: Path) -> RunSummary:
+    """The summary of a run's folder.
+
+    Raises InputError if the run has not finished (no summary yet) or the file cannot be read.
+    """
+    path = folder / SUMMARY_NAME
+    if not path.is_file():
+        raise InputError(f"{folder} holds no {SUMMARY_NAME}: the run has not finished")
+    try:
+        return RunSummary.model_validate_json(path.read_bytes())
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"]) or "the file"
+        raise InputError(f"{path} cannot be read: {where}: {first['msg']}") from error

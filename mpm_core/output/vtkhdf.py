@@ -1,0 +1,131 @@
+"""`run.vtkhdf`: all frames of a run in one file, a temporal PolyData of vertices (VTKHDF 2.0) through h5py.
+
+Layout: https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format/vtkhdf_specifications.html. Positions and
+fields of the steps lie one after the other; `Steps/PointOffsets` and `Steps/PointDataOffsets/NAME` say where each
+begins. The vertices are the same at all steps and are stored once.
+
+A frame is appended in place, since writing a copy for each would cost the square of the number of frames. One chunk
+per step and array means that the data of earlier steps is never touched: a run that is killed while it appends leaves
+them readable. Only the last moment, when HDF5 puts the new index into the file, is not protected; a resumed
+run therefore writes the file anew from the VTU frames, which also drops the steps after the checkpoint.
+"""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from mpm_core.output import atomic
+from mpm_core.output.frame import Frame
+
+VTKHDF_NAME = "run.vtkhdf"
+_CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
+_STEPS_PER_CHUNK = 1024
+
+
+def append_frame(path: Path, frame: Frame) -> None:
+    """Append a frame to the file, which is created with its first frame; the number of points never changes."""
+    if not path.exists():
+        rewrite(path, [frame])
+        return
+    # A viewer that has the file open must not stop the run, so no lock is asked for.
+    with h5py.File(path, "r+", locking=False) as file:
+        _append(file["VTKHDF"], frame)
+
+
+def rewrite(path: Path, frames: Iterable[Frame]) -> None:
+    """Write the file anew with these frames; without any there is no file."""
+    remaining = iter(frames)
+    first = next(remaining, None)
+    if first is None:
+        path.unlink(missing_ok=True)
+        return
+    with atomic.replacing(path) as partial, h5py.File(partial, "w", libver="earliest") as file:
+        root = file.create_group("VTKHDF")
+        _create_layout(root, first)
+        _append(root, first)
+        for frame in remaining:
+            _append(root, frame)
+
+
+def _create_layout(root: h5py.Group, frame: Frame) -> None:
+    """All groups and datasets, with no step yet."""
+    points = len(frame.positions)
+    root.attrs["Version"] = (2, 0)
+    root.attrs["Type"] = np.bytes_("PolyData")
+    _create_by_step(root, "NumberOfPoints")
+    for kind in _CELL_KINDS:
+        _create_cells(root.create_group(kind), points if kind == "Vertices" else 0)
+    _create_by_point(root, "Points", frame.positions, "m", "position")
+    steps = root.create_group("Steps")
+    steps.attrs["NSteps"] = 0
+    _create_by_step(steps, "Values", dtype=np.float64)
+    for name in ("PartOffsets", "NumberOfParts", "PointOffsets"):
+        _create_by_step(steps, name)
+    for name in ("CellOffsets", "ConnectivityIdOffsets"):
+        _create_by_step(steps, name, columns=(len(_CELL_KINDS),))
+    data, offsets = root.create_group("PointData"), steps.create_group("PointDataOffsets")
+    for field in frame.fields:
+        _create_by_point(data, field.name, field.stored_values(), field.unit, field.doc)
+        _create_by_step(offsets, field.name)
+
+
+def _create_cells(group: h5py.Group, count: int) -> None:
+    """`count` cells of one point each."""
+    group.create_dataset("Connectivity", data=np.arange(count, dtype=np.int64))
+    group.create_dataset("Offsets", data=np.arange(count + 1, dtype=np.int64))
+    _create_by_step(group, "NumberOfCells")
+    _create_by_step(group, "NumberOfConnectivityIds")
+
+
+def _create_by_step(
+    group: h5py.Group, name: str, dtype: type[np.generic] = np.int64, columns: tuple[int, ...] = ()
+) -> None:
+    """An empty dataset that grows by one row per step."""
+    chunk = (_STEPS_PER_CHUNK, *columns)
+    group.create_dataset(name, (0, *columns), dtype, maxshape=(None, *columns), chunks=chunk)
+
+
+def _create_by_point(group: h5py.Group, name: str, values: NDArray[np.floating], unit: str, doc: str) -> None:
+    """An empty dataset that grows by one chunk, all points, per step."""
+    dataset = group.create_dataset(
+        name,
+        (0, *values.shape[1:]),
+        values.dtype,
+        maxshape=(None, *values.shape[1:]),
+        chunks=values.shape,
+        compression="gzip",
+        compression_opts=1,
+        shuffle=True,
+    )
+    dataset.attrs["unit"] = unit
+    dataset.attrs["doc"] = doc
+
+
+def _append(root: h5py.Group, frame: Frame) -> None:
+    """Append the data first and count the step last."""
+    steps, points = root["Steps"], len(frame.positions)
+    number = int(steps.attrs["NSteps"])
+    _put(root["Points"], number * points, frame.positions)
+    for field in frame.fields:
+        _put(root["PointData"][field.name], number * points, field.stored_values())
+        _put(steps["PointDataOffsets"][field.name], number, [number * points])
+    _put(root["NumberOfPoints"], number, [points])
+    for kind in _CELL_KINDS:
+        count = points if kind == "Vertices" else 0
+        _put(root[kind]["NumberOfCells"], number, [count])
+        _put(root[kind]["NumberOfConnectivityIds"], number, [count])
+    rows = {"Values": frame.time, "PartOffsets": number, "NumberOfParts": 1, "PointOffsets": number * points}
+    for name, value in rows.items():
+        _put(steps[name], number, [value])
+    for name in ("CellOffsets", "ConnectivityIdOffsets"):
+        _put(steps[name], number, np.zeros((1, len(_CELL_KINDS)), dtype=np.int64))
+    steps.attrs["NSteps"] = number + 1
+
+
+def _put(dataset: h5py.Dataset, start: int, rows: NDArray[np.generic] | list[float]) -> None:
+    """Write `rows` from row `start` on; the dataset ends after them."""
+    dataset.resize(start + len(rows), axis=0)
+    dataset[start:] = rows

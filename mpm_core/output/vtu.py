@@ -1,0 +1,77 @@
+"""One frame as one VTU file: a vertex cell per point, written and read through meshio.
+
+meshio is no longer developed, so nothing outside this module knows of it. Its writer has no place for units and time;
+they are put into the finished XML, where VTK keeps them: the unit of each array under the information key
+`UNITS_LABEL`, time and step as field data (`TimeValue` is the name that the readers of VTK look for).
+"""
+
+from pathlib import Path
+
+import meshio
+import numpy as np
+
+from materials import InputError
+from mpm_core.output import atomic
+from mpm_core.output.frame import Field, Frame
+
+_POSITION_ARRAY = "Points"
+_END_OF_ARRAY = b"</DataArray>"
+_START_OF_GRID = b"<UnstructuredGrid>"
+
+
+def write_vtu(path: Path, frame: Frame) -> None:
+    """Write a frame: positions in double, fields in single precision, zlib-compressed."""
+    cells = np.arange(len(frame.positions), dtype=np.int32)[:, None]
+    mesh = meshio.Mesh(
+        np.ascontiguousarray(frame.positions, dtype=np.float64),
+        [("vertex", cells)],
+        point_data={field.name: field.stored_values() for field in frame.fields},
+    )
+    with atomic.replacing(path) as partial:
+        meshio.vtu.write(partial, mesh, compression="zlib")
+        partial.write_bytes(_with_time_and_units(partial.read_bytes(), frame))
+
+
+def read_vtu(path: Path, documentation: dict[str, tuple[str, str]]) -> Frame:
+    """Read a frame that `write_vtu` wrote; `documentation` maps the name of a field to its unit and doc.
+
+    Raises InputError if the file is missing or cannot be read.
+    """
+    if not path.is_file():
+        raise InputError(f"frame {path} is missing")
+    try:
+        mesh = meshio.vtu.read(path)
+        time, step = float(mesh.field_data["TimeValue"][0]), int(mesh.field_data["step"][0])
+    except Exception as error:  # meshio raises whatever its parser meets
+        raise InputError(f"frame {path} cannot be read: {type(error).__name__}: {error}") from error
+    fields = tuple(
+        Field(name, *documentation.get(name, ("", "")), np.asarray(values, dtype=np.float64))
+        for name, values in mesh.point_data.items()
+    )
+    return Frame(time, step, mesh.points, fields)
+
+
+def _with_time_and_units(xml: bytes, frame: Frame) -> bytes:
+    """The XML of meshio with the field data at the head of the grid and a unit at the end of each point array."""
+    parts = []
+    position = xml.index(_START_OF_GRID) + len(_START_OF_GRID)
+    parts += [xml[:position], _time_and_step(frame)]
+    for name, unit in [(_POSITION_ARRAY, "m"), *((field.name, field.unit) for field in frame.fields)]:
+        end = xml.index(_END_OF_ARRAY, xml.index(f'Name="{name}"'.encode(), position))
+        parts += [xml[position:end], _unit_key(unit)]
+        position = end
+    parts.append(xml[position:])
+    return b"".join(parts)
+
+
+def _time_and_step(frame: Frame) -> bytes:
+    return (
+        "\n<FieldData>\n"
+        f'<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{frame.time!r}</DataArray>\n'
+        f'<DataArray type="Int64" Name="step" NumberOfTuples="1" format="ascii">{frame.step}</DataArray>\n'
+        "</FieldData>"
+    ).encode()
+
+
+def _unit_key(unit: str) -> bytes:
+    return f'<InformationKey name="UNITS_LABEL" location="vtkDataArray">{unit}</InformationKey>\n'.encode()

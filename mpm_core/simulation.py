@@ -1,0 +1,179 @@
+"""The state of a run and one step of it. The step reads as the algorithm."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numba
+import numpy as np
+
+from materials import SimulationError
+from mpm_core import momentum
+from mpm_core.basis import BASES
+from mpm_core.body import Body
+from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, join_periodic
+from mpm_core.columns import X, Y
+from mpm_core.fields import chosen_fields
+from mpm_core.grid import Grid, Window
+from mpm_core.initial import build_bodies
+from mpm_core.scene import Scene
+from mpm_core.sorting import LONGEST_DRIFT
+from mpm_core.stress import BAD_POINT, INTERNAL_WORK, MAX_SIGNAL_SPEED
+from mpm_core.transfer import (
+    HIGHEST_X,
+    HIGHEST_Y,
+    KINETIC_ENERGY,
+    LOWEST_X,
+    LOWEST_Y,
+    MAX_SPEED,
+    MOVED_X,
+    MOVED_Y,
+)
+
+
+@dataclass
+class Ledger:
+    """Energies per width [J/m]: potential energy relative to the start, works since the start."""
+
+    kinetic: float
+    initial_kinetic: float
+    potential: float = 0.0
+    internal_work: float = 0.0
+    wall_work: float = 0.0
+
+    @property
+    def numerical_dissipation(self) -> float:
+        """What is left of the balance: energy that transfers and time integration took (or gave, if negative)."""
+        return self.initial_kinetic - self.kinetic - self.potential - self.internal_work - self.wall_work
+
+
+class Simulation:
+    """Bodies, grid and walls of a scene, and the clock.
+
+    Raises InputError for a scene that cannot be built and for a law that does not compile.
+    """
+
+    def __init__(self, scene: Scene, threads: int = 1) -> None:
+        self.scene = scene
+        self.threads = threads
+        numba.set_num_threads(threads)
+        self.basis = BASES[scene.transfer.basis]
+        self.periodic_axes = _periodic_axes(scene)
+        self.grid = Grid(scene.grid.lower, scene.grid.cells, scene.grid.cell_size, self.periodic_axes)
+        self.bodies = build_bodies(scene)
+        self.fields = chosen_fields(scene.output.fields, [body.law for body in self.bodies])
+        for body in self.bodies:
+            body.choose_kernels(self.basis, keeps_shear_strain="shear_strain" in self.fields)
+        self.walls = _walls(scene)
+        self.time = 0.0
+        self.steps = 0
+        self.drift = math.inf
+        corners = [body.corners() for body in self.bodies]
+        lower, upper = np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]
+        self.window = self._window_of((lower[0], lower[1]), (upper[0], upper[1]))
+        kinetic = sum(0.5 * body.point_mass * float((body.velocities**2).sum()) for body in self.bodies)
+        self.ledger = Ledger(kinetic, kinetic)
+        self.signal_speed = self._at_least_free_fall(max(body.largest_signal_speed() for body in self.bodies))
+
+    def step(self, dt: float) -> None:
+        """Advance by dt [s]. Raises SimulationError naming the point where the result cannot be right."""
+        grid, window = self.grid, self.window
+        self._sort_if_drifted()
+        momentum.clear(grid, window)
+        for body in self.bodies:
+            body.to_grid(grid)
+        for axis in self.periodic_axes:
+            join_periodic(grid.nodes, grid, axis)
+        momentum.update_velocities(grid, window, self.scene.gravity, dt)
+        for wall in self.walls:
+            self.ledger.wall_work += hold_at_wall(grid, wall, window)
+        for body in self.bodies:
+            body.from_grid(grid, dt, self._memory(dt))
+        for body in self.bodies:
+            body.update_stress(dt)
+        self.time += dt
+        self.steps += 1
+        self._take_reports(dt)
+
+    def stable_step(self) -> float:
+        """The largest stable step [s] at the present state: a cell over the fastest signal."""
+        return self.grid.cell_size / self.signal_speed
+
+    def _memory(self, dt: float) -> float:
+        """The share of the unresolved velocity that outlives a step."""
+        transfer = self.scene.transfer
+        return math.exp(-dt / transfer.time_constant) if transfer.scheme == "affine_flip" else 0.0
+
+    def _sort_if_drifted(self) -> None:
+        if self.drift > LONGEST_DRIFT * self.grid.cell_size:
+            for body in self.bodies:
+                for axis in self.periodic_axes:
+                    body.wrap(axis, self.grid.lower[axis], self.grid.upper[axis] - self.grid.lower[axis])
+                body.sort(self.grid, self.basis, self.window, self.threads)
+            self.drift = 0.0
+
+    def _take_reports(self, dt: float) -> None:
+        for body in self.bodies:
+            bad = body.stress_reports[:, BAD_POINT].max()
+            if bad >= 0:
+                self._fail(body, int(bad), "the stress is not finite, or the volume changed by half in one step")
+        reports = np.concatenate([body.transfer_reports for body in self.bodies])
+        lower = (float(reports[:, LOWEST_X].min()), float(reports[:, LOWEST_Y].min()))
+        upper = (float(reports[:, HIGHEST_X].max()), float(reports[:, HIGHEST_Y].max()))
+        self._refuse_lost_points(lower, upper)
+        self.window = self._window_of(lower, upper)
+        self.drift += dt * float(reports[:, MAX_SPEED].max())
+        stress = np.concatenate([body.stress_reports for body in self.bodies])
+        self.signal_speed = self._at_least_free_fall(float(stress[:, MAX_SIGNAL_SPEED].max()))
+        ledger = self.ledger
+        ledger.kinetic = float(reports[:, KINETIC_ENERGY].sum())
+        ledger.internal_work += float(stress[:, INTERNAL_WORK].sum())
+        moved = (float(reports[:, MOVED_X].sum()), float(reports[:, MOVED_Y].sum()))
+        ledger.potential -= dt * (self.scene.gravity[0] * moved[0] + self.scene.gravity[1] * moved[1])
+
+    def _window_of(self, lower: tuple[float, float], upper: tuple[float, float]) -> Window:
+        """The nodes in reach of points between two corners; all nodes along a periodic axis."""
+        window = self.grid.window(lower, upper, self.basis.offset, self.basis.width)
+        if 0 in self.periodic_axes:
+            window = replace(window, first_x=0, last_x=self.grid.shape[0] - 1)
+        if 1 in self.periodic_axes:
+            window = replace(window, first_y=0, last_y=self.grid.shape[1] - 1)
+        return window
+
+    def _at_least_free_fall(self, speed: float) -> float:
+        """A signal speed no less than that of a fall through one cell, for material without stiffness."""
+        return max(speed, math.sqrt(math.hypot(*self.scene.gravity) * self.grid.cell_size))
+
+    def _refuse_lost_points(self, lower: tuple[float, float], upper: tuple[float, float]) -> None:
+        for axis in (0, 1):
+            if axis in self.periodic_axes:
+                continue
+            if lower[axis] < self.grid.lower[axis] or upper[axis] > self.grid.upper[axis]:
+                self._fail_outside(axis)
+
+    def _fail_outside(self, axis: int) -> None:
+        for body in self.bodies:
+            coordinate = body.points[(X, Y)[axis]]
+            outside = (coordinate < self.grid.lower[axis]) | (coordinate > self.grid.upper[axis])
+            if outside.any():
+                self._fail(body, int(np.argmax(outside)), "the point has left the domain")
+
+    def _fail(self, body: Body, point: int, reason: str) -> None:
+        x, y = body.points[X, point], body.points[Y, point]
+        raise SimulationError(
+            f"t = {self.time:.6g} s, step {self.steps}: point {body.ids[point]} of {body.name} ({body.law.name}) "
+            f"at ({x:.6g}, {y:.6g}) m: {reason}"
+        )
+
+
+def _walls(scene: Scene) -> list[Wall]:
+    sections = [(side, getattr(scene.boundary, side)) for side in SIDES]
+    return [
+        Wall(side, WallKind[section.kind.upper()], section.coefficient)
+        for side, section in sections
+        if section.kind != "periodic"
+    ]
+
+
+def _periodic_axes(scene: Scene) -> list[int]:
+    kinds = (scene.boundary.left.kind, scene.boundary.bottom.kind)
+    return [axis for axis, kind in enumerate(kinds) if kind == "periodic"]

@@ -1,0 +1,129 @@
+"""The stress pass: the only kernel that knows a law. One is generated for each law that a scene uses.
+
+For each point: rotate the stress with the material (exact rotation by the increment of spin; Hughes & Winget 1980),
+bring the density to the end of the step (midpoint rule for d ln rho = -tr D dt), call the law.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import njit, prange
+from numba.cpython.unsafe.tuple import tuple_setitem
+from numba.extending import register_jitable
+
+from materials.compilation import PointwiseLaw
+from materials.tensor import SymmetricTensor, shear_strain_rate
+from mpm_core.columns import (
+    DENSITY,
+    FIRST_STATE,
+    LXX,
+    LXY,
+    LYX,
+    LYY,
+    SHEAR_STRAIN,
+    SXX,
+    SXY,
+    SYY,
+    SZZ,
+    VX,
+    VY,
+)
+from mpm_core.transfer import BLOCK, FAST
+
+# What `stress_pass` reports for each block of points.
+MAX_SIGNAL_SPEED, INTERNAL_WORK, BAD_POINT = range(3)
+REPORTS = 3
+
+# A volumetric strain increment per step beyond which no explicit step can be right.
+LARGEST_INCREMENT = 0.5
+
+
+def make_state_access(state_class: type[Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Functions that load a law's state of one point from its columns, and store it."""
+    count = len(state_class._fields)
+    zeros = (0.0,) * count
+
+    if count == 0:
+
+        @register_jitable
+        def load_nothing(columns, p):  # type: ignore[no-untyped-def]
+            return state_class()
+
+        @register_jitable
+        def store_nothing(columns, p, state):  # type: ignore[no-untyped-def]
+            pass
+
+        return load_nothing, store_nothing
+
+    @register_jitable
+    def load(columns, p):  # type: ignore[no-untyped-def]
+        values = zeros
+        for k in range(count):
+            values = tuple_setitem(values, k, columns[k, p])
+        return state_class(*values)
+
+    @register_jitable
+    def store(columns, p, state):  # type: ignore[no-untyped-def]
+        for k in range(count):
+            columns[k, p] = state[k]
+
+    return load, store
+
+
+@register_jitable
+def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
+    """In-plane stress components after a rotation by `angle` (Cayley's form: exactly orthogonal)."""
+    t = 0.5 * angle
+    cosine = (1.0 - t * t) / (1.0 + t * t)
+    sine = 2.0 * t / (1.0 + t * t)
+    cosine_2, sine_2 = cosine * cosine - sine * sine, 2.0 * sine * cosine
+    mean, half = 0.5 * (sxx + syy), 0.5 * (sxx - syy)
+    turned = half * cosine_2 - sxy * sine_2
+    return mean + turned, mean - turned, half * sine_2 + sxy * cosine_2
+
+
+def make_stress_pass(law: PointwiseLaw, state_class: type[Any], keeps_shear_strain: bool) -> Callable[..., Any]:
+    """The stress pass of a law.
+
+    Reports per block of points: the largest signal speed c + |v| [m/s], the work of the stress on the strain [J], and
+    the index of a point whose result is not finite or whose volume changes too much in one step (-1: none).
+    """
+    update, sound_speed, source_hash = law.update, law.sound_speed, law.source_hash
+    load, store = make_state_access(state_class)
+
+    @njit(parallel=True, fastmath=FAST, error_model="numpy", cache=True)
+    def stress_pass(points, point_mass, parameters, dt, reports):  # type: ignore[no-untyped-def]
+        vx, vy = points[VX], points[VY]
+        lxx, lxy, lyx, lyy = points[LXX], points[LXY], points[LYX], points[LYY]
+        sxx, syy, szz, sxy = points[SXX], points[SYY], points[SZZ], points[SXY]
+        density, shear_strain = points[DENSITY], points[SHEAR_STRAIN]
+        states = points[FIRST_STATE:]
+        count = points.shape[1]
+        for block in prange(reports.shape[0]):
+            fastest, work, bad = 0.0 * source_hash, 0.0, -1
+            for p in range(block * BLOCK, min(count, (block + 1) * BLOCK)):
+                strain_rate = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
+                power = (sxx[p] * strain_rate.xx + syy[p] * strain_rate.yy + 2.0 * sxy[p] * strain_rate.xy) / density[p]
+                xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
+                half_increment = 0.5 * dt * (lxx[p] + lyy[p])
+                new_density = density[p] * (1.0 - half_increment) / (1.0 + half_increment)
+                old_stress = SymmetricTensor(xx, yy, szz[p], xy, 0.0, 0.0)
+                state = load(states, p)
+                stress, state = update(old_stress, strain_rate, new_density, state, parameters, dt)
+                store(states, p, state)
+                sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
+                density[p] = new_density
+                if keeps_shear_strain:
+                    shear_strain[p] += dt * shear_strain_rate(strain_rate)
+                speed = np.sqrt(vx[p] * vx[p] + vy[p] * vy[p])
+                fastest = max(fastest, sound_speed(stress, new_density, state, parameters) + speed)
+                work += power
+                sound = np.isfinite(stress.xx + stress.yy + stress.xy + speed)
+                if not (sound and abs(half_increment) < 0.5 * LARGEST_INCREMENT):
+                    bad = p
+            reports[block, MAX_SIGNAL_SPEED] = fastest
+            reports[block, INTERNAL_WORK] = point_mass * dt * work
+            reports[block, BAD_POINT] = bad
+
+    return stress_pass

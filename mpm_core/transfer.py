@@ -1,0 +1,149 @@
+"""The two transfers of the Material Point Method. They know points, nodes and shape functions, but no law.
+
+Affine particle-in-cell transfer (Jiang et al. 2015) with the moving-least-squares gradient (Hu et al. 2018): one
+matrix per point, L = sum_i w_i v_i (x_i - x_p)^T / D, is both its affine velocity field and its velocity gradient. On top of it
+the point keeps what the grid did not resolve of its velocity, v_p - sum_i w_i v_i, for a time constant tau:
+
+    v_p <- sum_i w_i v_i^new + exp(-dt/tau) (v_p - sum_i w_i v_i^old)
+
+so that tau = 0 is APIC, tau = infinity affine FLIP, and the loss per second does not depend on the step.
+
+Points come in stripes of grid columns (`sorting`). Stripes of even number are scattered first, then those of odd number:
+within each half no two stripes share a node, so that the sums come out the same for any number of threads.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import njit, prange
+
+from mpm_core.basis import Basis, make_stencil
+from mpm_core.columns import DENSITY, LXX, LXY, LYX, LYY, SXX, SXY, SYY, VX, VY, X, Y
+from mpm_core.grid import COMPONENTS, FX, FY, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, PX, PY
+
+# Reordering is harmless to sums; 'nnan' and 'ninf' are left out so that NaN stays visible.
+FAST = {"contract", "reassoc", "arcp", "nsz"}
+
+BLOCK = 2048
+
+# What `grid_to_points` reports for each block of points.
+KINETIC_ENERGY, LOWEST_X, HIGHEST_X, LOWEST_Y, HIGHEST_Y, MAX_SPEED, MOVED_X, MOVED_Y = range(8)
+REPORTS = 8
+
+
+def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
+    """Scatter mass, momentum and internal force of the stripes of one parity to the grid.
+
+    m_i += w_i m;  (m v)_i += w_i m (v + L (x_i - x_p));  f_i -= w_i V sigma (x_i - x_p) / D
+    """
+    width, stencil = basis.width, make_stencil(basis)
+
+    @njit(parallel=True, fastmath=FAST, error_model="numpy", cache=True)
+    def points_to_grid(  # type: ignore[no-untyped-def]
+        points, point_mass, stripe_starts, chunks, parity, nodes, nodes_y, ghosts, origin_x, origin_y, cell_size
+    ):
+        x, y, vx, vy = points[X], points[Y], points[VX], points[VY]
+        lxx, lxy, lyx, lyy = points[LXX], points[LXY], points[LYX], points[LYY]
+        sxx, syy, sxy, density = points[SXX], points[SYY], points[SXY], points[DENSITY]
+        inverse_size = 1.0 / cell_size
+        affine = point_mass * cell_size
+        for chunk in prange(chunks.shape[0] - 1):
+            for stripe in range(chunks[chunk] + (chunks[chunk] + parity) % 2, chunks[chunk + 1], 2):
+                for p in range(stripe_starts[stripe], stripe_starts[stripe + 1]):
+                    i, fx, wx, moment_x = stencil((x[p] - origin_x) * inverse_size, ghosts[0], ghosts[1])
+                    j, fy, wy, moment_y = stencil((y[p] - origin_y) * inverse_size, ghosts[2], ghosts[3])
+                    volume = point_mass / density[p] * inverse_size
+                    force_x = volume / moment_x
+                    force_y = volume / moment_y
+                    momentum_x = point_mass * vx[p]
+                    momentum_y = point_mass * vy[p]
+                    axy, ayy = affine * lxy[p], affine * lyy[p]
+                    fxy, fyy = force_y * sxy[p], force_y * syy[p]
+                    for a in range(width):
+                        dx = a - fx
+                        row = np.uint64(((i + a) * nodes_y + j) * COMPONENTS)
+                        px = momentum_x + affine * lxx[p] * dx
+                        py = momentum_y + affine * lyx[p] * dx
+                        qx = force_x * sxx[p] * dx
+                        qy = force_x * sxy[p] * dx
+                        for b in range(width):
+                            dy = b - fy
+                            w = wx[a] * wy[b]
+                            node = row + np.uint64(b * COMPONENTS)
+                            nodes[node + np.uint64(MASS)] += w * point_mass
+                            nodes[node + np.uint64(PX)] += w * (px + axy * dy)
+                            nodes[node + np.uint64(PY)] += w * (py + ayy * dy)
+                            nodes[node + np.uint64(FX)] -= w * (qx + fxy * dy)
+                            nodes[node + np.uint64(FY)] -= w * (qy + fyy * dy)
+
+    return points_to_grid
+
+
+def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
+    """Gather velocity and velocity gradient from the grid and move the points.
+
+    `memory` is exp(-dt/tau). Reports per block of points: kinetic energy [J/m], corners of the bounding box [m], the
+    largest speed at which a point moves [m/s] and the momentum of that motion [kg/s].
+    """
+    width, stencil = basis.width, make_stencil(basis)
+
+    @njit(parallel=True, fastmath=FAST, error_model="numpy", cache=True)
+    def grid_to_points(  # type: ignore[no-untyped-def]
+        points, point_mass, nodes, nodes_y, ghosts, origin_x, origin_y, cell_size, dt, memory, reports
+    ):
+        x, y, vx, vy = points[X], points[Y], points[VX], points[VY]
+        lxx, lxy, lyx, lyy = points[LXX], points[LXY], points[LYX], points[LYY]
+        inverse_size = 1.0 / cell_size
+        count = points.shape[1]
+        for block in prange(reports.shape[0]):
+            twice_energy = 0.0
+            lowest_x, highest_x, lowest_y, highest_y = np.inf, -np.inf, np.inf, -np.inf
+            fastest, moved_x, moved_y = 0.0, 0.0, 0.0
+            for p in range(block * BLOCK, min(count, (block + 1) * BLOCK)):
+                i, fx, wx, moment_x = stencil((x[p] - origin_x) * inverse_size, ghosts[0], ghosts[1])
+                j, fy, wy, moment_y = stencil((y[p] - origin_y) * inverse_size, ghosts[2], ghosts[3])
+                new_vx, new_vy, old_vx, old_vy = 0.0, 0.0, 0.0, 0.0
+                gxx, gxy, gyx, gyy = 0.0, 0.0, 0.0, 0.0
+                for a in range(width):
+                    dx = a - fx
+                    row = np.uint64(((i + a) * nodes_y + j) * COMPONENTS)
+                    for b in range(width):
+                        dy = b - fy
+                        w = wx[a] * wy[b]
+                        node = row + np.uint64(b * COMPONENTS)
+                        ux = w * nodes[node + np.uint64(NEW_VX)]
+                        uy = w * nodes[node + np.uint64(NEW_VY)]
+                        new_vx += ux
+                        new_vy += uy
+                        gxx += ux * dx
+                        gxy += ux * dy
+                        gyx += uy * dx
+                        gyy += uy * dy
+                        old_vx += w * nodes[node + np.uint64(OLD_VX)]
+                        old_vy += w * nodes[node + np.uint64(OLD_VY)]
+                scale_x = inverse_size / moment_x
+                scale_y = inverse_size / moment_y
+                lxx[p], lxy[p] = gxx * scale_x, gxy * scale_y
+                lyx[p], lyy[p] = gyx * scale_x, gyy * scale_y
+                velocity_x = new_vx + memory * (vx[p] - old_vx)
+                velocity_y = new_vy + memory * (vy[p] - old_vy)
+                vx[p], vy[p] = velocity_x, velocity_y
+                new_x = x[p] + dt * new_vx
+                new_y = y[p] + dt * new_vy
+                x[p], y[p] = new_x, new_y
+                speed_squared = velocity_x * velocity_x + velocity_y * velocity_y
+                moved_squared = new_vx * new_vx + new_vy * new_vy
+                twice_energy += speed_squared
+                moved_x += new_vx
+                moved_y += new_vy
+                fastest = max(fastest, moved_squared)
+                lowest_x, highest_x = min(lowest_x, new_x), max(highest_x, new_x)
+                lowest_y, highest_y = min(lowest_y, new_y), max(highest_y, new_y)
+            reports[block, KINETIC_ENERGY] = 0.5 * point_mass * twice_energy
+            reports[block, LOWEST_X], reports[block, HIGHEST_X] = lowest_x, highest_x
+            reports[block, LOWEST_Y], reports[block, HIGHEST_Y] = lowest_y, highest_y
+            reports[block, MAX_SPEED] = np.sqrt(fastest)
+            reports[block, MOVED_X], reports[block, MOVED_Y] = point_mass * moved_x, point_mass * moved_y
+
+    return grid_to_points

@@ -1,0 +1,100 @@
+"""The pictures: which frames they choose, and that bodies look solid and stay in their outline."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+from synthetic_run import COLUMN_HEIGHT, COLUMN_WIDTH, SPACING, frame, write_run
+
+from materials import InputError
+from mpm_core.output.picture_style import color_scale, field_label, scalar_values
+from mpm_core.output.pictures import draw_frame, draw_history, write_run_pictures
+from mpm_core.output.point_image import ColorScale, draw_points, point_spacing
+from mpm_core.output.run_folder import RunFolder
+from mpm_core.output.snapshots import draw_snapshots, normalized_runout
+
+
+def drawn(positions, values):
+    """The image of the points and the area [m2] that it covers."""
+    image = draw_points(Figure().subplots(), positions, values, SPACING, ColorScale("copper", 0.0, 1.0))
+    left, right, bottom, top = image.get_extent()
+    rows, columns = image.get_array().shape
+    pixel_area = (right - left) * (top - bottom) / (rows * columns)
+    return image.get_array(), pixel_area * np.count_nonzero(~np.ma.getmaskarray(image.get_array()))
+
+
+def test_spacing_is_that_of_the_lattice():
+    assert point_spacing(frame(0).positions) == pytest.approx(SPACING)
+
+
+@pytest.mark.parametrize("number", [0, 5, 10])
+def test_a_stretched_body_is_drawn_solid_with_its_own_area(number):
+    positions = frame(number).positions
+    image, area = drawn(positions, np.ones(len(positions)))
+    assert area == pytest.approx(2 * COLUMN_WIDTH * COLUMN_HEIGHT, rel=0.07)
+    covered = ~np.ma.getmaskarray(image)
+    middle = covered[covered.shape[0] // 2]
+    assert middle[np.flatnonzero(middle)[0] : np.flatnonzero(middle)[-1]].all()
+
+
+def test_bodies_further_apart_than_four_spacings_stay_apart():
+    positions = frame(0).positions.copy()
+    positions[positions[:, 0] > 0, 0] += 6 * SPACING
+    image, _ = drawn(positions, np.ones(len(positions)))
+    middle = ~np.ma.getmaskarray(image)[image.shape[0] // 2]
+    assert np.count_nonzero(np.diff(middle.astype(int)) == 1) == 2
+
+
+def test_colours_sit_where_the_points_are():
+    positions = frame(0).positions
+    image, _ = drawn(positions, (positions[:, 0] > 0).astype(float))
+    half = image.shape[1] // 2
+    assert image[:, : half - 20].max() == 0.0
+    assert image[:, half + 20 :].min() == 1.0
+
+
+def test_normalised_runout_runs_from_zero_to_one(tmp_path):
+    run = RunFolder(write_run(tmp_path / "run"))
+    np.testing.assert_allclose(normalized_runout(run, run.frame_times), np.linspace(0, 1, 11), atol=1e-12)
+
+
+def test_a_heap_at_rest_has_no_snapshots(tmp_path):
+    folder = write_run(tmp_path / "heap", growth=0.0)
+    assert [path.name for path in write_run_pictures(folder)] == ["final.png", "history.png"]
+    with pytest.raises(InputError, match="never grew"):
+        draw_snapshots([("heap", RunFolder(folder))], tmp_path / "a.png")
+    assert not (tmp_path / "a.png").exists()
+
+
+def test_a_collapse_gets_all_three_pictures(tmp_path):
+    for path in write_run_pictures(write_run(tmp_path / "run")):
+        picture = imread(path)[..., :3]
+        assert picture.shape[1] == 1800
+        assert 0.02 < np.mean(picture.min(axis=2) < 0.5) < 0.9
+    assert path.name == "snapshots.png"
+
+
+def test_several_runs_share_a_picture_with_a_row_each(tmp_path):
+    runs = [(name, RunFolder(write_run(tmp_path / name, growth))) for name, growth in (("a", 1.5), ("b", 2.0))]
+    draw_snapshots(runs[:1], tmp_path / "one.png")
+    draw_snapshots(runs, tmp_path / "two.png")
+    draw_history(runs, tmp_path / "history.png")
+    assert imread(tmp_path / "two.png").shape[0] > 1.3 * imread(tmp_path / "one.png").shape[0]
+
+
+def test_a_field_that_the_run_did_not_write_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"no field 'pressur'.*did you mean 'pressure'"):
+        draw_frame(frame(0), "pressur", tmp_path / "a.png")
+
+
+def test_labels_carry_units_and_vectors_are_shown_by_length():
+    assert field_label(frame(0).field("pressure")) == "pressure [Pa]"
+    assert field_label(frame(0).field("shear_strain")) == "shear strain"
+    velocity = frame(3).field("velocity")
+    np.testing.assert_allclose(scalar_values(velocity) ** 2, (velocity.values**2).sum(axis=1))
+
+
+def test_a_uniform_field_still_has_a_colour_scale():
+    scale = color_scale([np.full(5, 2.0)], None)
+    assert scale.lower == 2.0
+    assert scale.upper > scale.lower
