@@ -1,1 +1,7 @@
-"""."""
+"""The Material Point Method: points, grid, transfer, boundary, step, scene, output. Knows laws only through materials."""
+
+from mpm_core.run import run
+from mpm_core.scene import Scene
+from mpm_core.simulation import Simulation
+
+__all__ = ["Scene", "Simulation", "run"]

@@ -45,7 +45,7 @@ def linear_weights(f: float) -> tuple[float, float]:
 
 @register_jitable
 def linear_moment(f: float) -> float:
-    """f (1 - f), which vanishes at the nodes together with the weight of the far node."""
+    """F (1 - f), which vanishes at the nodes together with the weight of the far node."""
     return max(f * (1.0 - f), 1e-12)
 
 

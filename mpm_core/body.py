@@ -10,7 +10,7 @@ from materials import InputError, SymmetricTensor
 from materials.compilation import explained, pointwise_law
 from materials.law import Law
 from mpm_core.basis import Basis
-from mpm_core.columns import DENSITY, FIRST_STATE, SXX, SXY, SYY, SZZ, VX, VY, X, Y, allocate
+from mpm_core.columns import DENSITY, FIRST_STATE, NAMES, SXX, SXY, SYY, SZZ, VX, VY, X, Y, allocate
 from mpm_core.grid import Grid, Window
 from mpm_core.sorting import balanced_chunks, sort_by_stencil
 from mpm_core.stress import REPORTS as STRESS_REPORTS
@@ -51,6 +51,11 @@ class Body:
     def count(self) -> int:
         """Number of points."""
         return self.points.shape[1]
+
+    @property
+    def column_names(self) -> tuple[str, ...]:
+        """What the rows of `points` hold."""
+        return (*NAMES, *self.law.state._fields)
 
     def choose_kernels(self, basis: Basis, keeps_shear_strain: bool) -> None:
         """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""

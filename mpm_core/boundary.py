@@ -70,6 +70,7 @@ def _hold(nodes, start, along, count, axis, sign, kind, friction):  # type: igno
         if mass <= 0.0:
             continue
         free_normal, free_tangential = nodes[node + NEW_VX + axis], nodes[node + NEW_VY - axis]
+        old_normal, old_tangential = nodes[node + OLD_VX + axis], nodes[node + OLD_VY - axis]
         normal, tangential = free_normal, free_tangential
         approach = max(0.0, -sign * normal)
         if kind == WallKind.NO_SLIP:
@@ -81,7 +82,6 @@ def _hold(nodes, start, along, count, axis, sign, kind, friction):  # type: igno
             tangential = np.copysign(max(0.0, abs(tangential) - friction * approach), tangential)
         nodes[node + NEW_VX + axis] = normal
         nodes[node + NEW_VY - axis] = tangential
-        old_normal, old_tangential = nodes[node + OLD_VX + axis], nodes[node + OLD_VY - axis]
         taken += 0.5 * mass * (free_normal - normal) * (old_normal + normal)
         taken += 0.5 * mass * (free_tangential - tangential) * (old_tangential + tangential)
     return taken

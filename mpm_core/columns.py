@@ -6,15 +6,21 @@ The law's state variables follow after `FIRST_STATE`, in the order of its declar
 import numpy as np
 from numpy.typing import NDArray
 
+NAMES = (
+    *("x", "y", "velocity_x", "velocity_y"),
+    *("gradient_xx", "gradient_xy", "gradient_yx", "gradient_yy"),
+    *("stress_xx", "stress_yy", "stress_zz", "stress_xy"),
+    *("density", "shear_strain"),
+)
 X, Y = 0, 1
 VX, VY = 2, 3
 LXX, LXY, LYX, LYY = 4, 5, 6, 7
 SXX, SYY, SZZ, SXY = 8, 9, 10, 11
 DENSITY = 12
 SHEAR_STRAIN = 13
-FIRST_STATE = 14
+FIRST_STATE = len(NAMES)
 
-CACHE_LINE = 8
+DOUBLES_PER_CACHE_LINE = 8
 
 
 def allocate(columns: int, points: int) -> NDArray[np.float64]:
@@ -22,6 +28,6 @@ def allocate(columns: int, points: int) -> NDArray[np.float64]:
 
     Rows a multiple of 4096 bytes apart would evict one another; an odd number of cache lines between them cannot.
     """
-    lines = -(-points // CACHE_LINE)
+    lines = -(-points // DOUBLES_PER_CACHE_LINE)
     lines += 1 - lines % 2
-    return np.zeros((columns, lines * CACHE_LINE))[:, :points]
+    return np.zeros((columns, lines * DOUBLES_PER_CACHE_LINE))[:, :points]

@@ -91,4 +91,4 @@ def _initialise_state(law: Law, parameters: tuple[float, ...], points: NDArray[n
     states = np.array(
         [law.initial_state(SymmetricTensor(xx, yy, zz, 0.0, 0.0, 0.0), rho, parameters) for xx, yy, zz, rho in distinct]
     )
-    points[FIRST_STATE:] = states[which].T.reshape(len(law.state._fields), -1)
+    points[FIRST_STATE:] = states[which].T.reshape(len(law.state._fields), points.shape[1])

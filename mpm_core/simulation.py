@@ -1,6 +1,7 @@
 """The state of a run and one step of it. The step reads as the algorithm."""
 
 import math
+import time
 from dataclasses import dataclass, replace
 
 import numba
@@ -61,8 +62,10 @@ class Simulation:
         self.grid = Grid(scene.grid.lower, scene.grid.cells, scene.grid.cell_size, self.periodic_axes)
         self.bodies = build_bodies(scene)
         self.fields = chosen_fields(scene.output.fields, [body.law for body in self.bodies])
+        started = time.perf_counter()
         for body in self.bodies:
             body.choose_kernels(self.basis, keeps_shear_strain="shear_strain" in self.fields)
+        self.build_time = time.perf_counter() - started
         self.walls = _walls(scene)
         self.time = 0.0
         self.steps = 0

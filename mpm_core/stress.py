@@ -13,7 +13,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw
-from materials.tensor import SymmetricTensor, shear_strain_rate
+from materials.tensor import SymmetricTensor, added, contraction, shear_strain_rate
 from mpm_core.columns import (
     DENSITY,
     FIRST_STATE,
@@ -39,6 +39,16 @@ REPORTS = 3
 LARGEST_INCREMENT = 0.5
 
 
+@register_jitable
+def replaced(values, k, value):  # type: ignore[no-untyped-def]
+    """A copy of a tuple with one item replaced.
+
+    A function of this module rather than a call in `load`: the disk cache is keyed on what a kernel closes over, and the
+    compiler's intrinsic itself is another object in every process.
+    """
+    return tuple_setitem(values, k, value)
+
+
 def make_state_access(state_class: type[Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """Functions that load a law's state of one point from its columns, and store it."""
     count = len(state_class._fields)
@@ -60,7 +70,7 @@ def make_state_access(state_class: type[Any]) -> tuple[Callable[..., Any], Calla
     def load(columns, p):  # type: ignore[no-untyped-def]
         values = zeros
         for k in range(count):
-            values = tuple_setitem(values, k, columns[k, p])
+            values = replaced(values, k, columns[k, p])
         return state_class(*values)
 
     @register_jitable
@@ -104,7 +114,6 @@ def make_stress_pass(law: PointwiseLaw, state_class: type[Any], keeps_shear_stra
             fastest, work, bad = 0.0 * source_hash, 0.0, -1
             for p in range(block * BLOCK, min(count, (block + 1) * BLOCK)):
                 strain_rate = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-                power = (sxx[p] * strain_rate.xx + syy[p] * strain_rate.yy + 2.0 * sxy[p] * strain_rate.xy) / density[p]
                 xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
                 half_increment = 0.5 * dt * (lxx[p] + lyy[p])
                 new_density = density[p] * (1.0 - half_increment) / (1.0 + half_increment)
@@ -112,13 +121,14 @@ def make_stress_pass(law: PointwiseLaw, state_class: type[Any], keeps_shear_stra
                 state = load(states, p)
                 stress, state = update(old_stress, strain_rate, new_density, state, parameters, dt)
                 store(states, p, state)
+                mean_density = 0.5 * (density[p] + new_density)
+                work += 0.5 * contraction(added(old_stress, stress), strain_rate) / mean_density
                 sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
                 density[p] = new_density
                 if keeps_shear_strain:
                     shear_strain[p] += dt * shear_strain_rate(strain_rate)
                 speed = np.sqrt(vx[p] * vx[p] + vy[p] * vy[p])
                 fastest = max(fastest, sound_speed(stress, new_density, state, parameters) + speed)
-                work += power
                 sound = np.isfinite(stress.xx + stress.yy + stress.xy + speed)
                 if not (sound and abs(half_increment) < 0.5 * LARGEST_INCREMENT):
                     bad = p

@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
-from mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame, rewrite
+from mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame, drop_after
 
 STEPS = 5
 
@@ -96,14 +96,8 @@ def test_appending_does_not_fail_while_a_viewer_has_the_file_open(path):
     assert_holds_steps(path, STEPS + 1)
 
 
-def test_a_resumed_run_rewrites_the_file_even_if_it_was_damaged(path):
-    path.write_bytes(path.read_bytes()[:2000])
-    rewrite(path, (frame(number) for number in range(3)))
+def test_a_resumed_run_takes_the_place_of_dropped_frames(path):
+    drop_after(path, frame(2).time)
     assert_holds_steps(path, 3)
     append_frame(path, frame(3))
     assert_holds_steps(path, 4)
-
-
-def test_without_frames_there_is_no_file(path):
-    rewrite(path, [])
-    assert not path.exists()

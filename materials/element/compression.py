@@ -53,9 +53,7 @@ def biaxial(settings: StrainedSettings) -> LoadingPath:
 COMPRESSION_TESTS = (
     ElementTest("isotropic", "isotropic compression", StrainedSettings, isotropic_compression),
     ElementTest("oedometer", "axial compression without lateral strain", StrainedSettings, oedometer),
-    ElementTest(
-        "triaxial-drained", "axial compression at constant radial stress", StrainedSettings, triaxial_drained
-    ),
+    ElementTest("triaxial-drained", "axial compression at constant radial stress", StrainedSettings, triaxial_drained),
     ElementTest("triaxial-undrained", "axial compression at constant volume", StrainedSettings, triaxial_undrained),
     ElementTest("biaxial", "plane-strain compression at constant lateral stress", StrainedSettings, biaxial),
 )

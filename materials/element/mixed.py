@@ -1,4 +1,4 @@
-"""Mixed control: in every stage each of the six components follows a strain rate or a stress rate, given in a TOML file.
+"""Mixed control: in every stage each component follows a strain rate or a stress rate, given in a TOML file.
 
     time_step = 1e-3                            # s
 
@@ -12,7 +12,7 @@ A component that a stage does not name has no strain rate. Frame and density are
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple, Self
+from typing import Annotated, Literal, NamedTuple, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
 
@@ -22,6 +22,7 @@ from materials.errors import InputError, nearest_name
 from materials.tensor import SymmetricTensor
 
 Component = Literal["xx", "yy", "zz", "xy", "yz", "xz"]
+COMPONENTS: tuple[Component, ...] = get_args(Component)
 Positive = Annotated[FiniteFloat, Field(gt=0.0)]
 
 
@@ -52,12 +53,12 @@ class Stage(BaseModel):
     @property
     def prescribed(self) -> SymmetricTensor:
         """The strain rate [1/s], with 0 for the components whose stress is prescribed."""
-        return SymmetricTensor(**{name: self.strain_rate.get(name, 0.0) for name in SymmetricTensor._fields})
+        return SymmetricTensor(*(self.strain_rate.get(name, 0.0) for name in COMPONENTS))
 
     @property
     def controlled(self) -> list[int]:
         """The indices of the components whose stress is prescribed, in the order of `stress_rate`."""
-        return [SymmetricTensor._fields.index(name) for name in self.stress_rate]
+        return [COMPONENTS.index(name) for name in self.stress_rate]
 
 
 class MixedControl(BaseModel):

@@ -99,7 +99,7 @@ class ElementResult:
 
     @cached_property
     def log_specific_volume(self) -> Array:
-        """ln v = ln(rho_p/rho), shape (points,)."""
+        """Logarithm of the specific volume, ln v = ln(rho_p/rho), shape (points,)."""
         return np.log(self.grain_density / self.density)
 
     def state_variable(self, name: str) -> Array:

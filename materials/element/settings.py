@@ -2,14 +2,18 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from materials.declarations import Parameter, declared_fields
 from materials.element.path import LoadingPath
 
+if TYPE_CHECKING:
+    from materials.element.mixed import MixedControl
+
 InitialPressure = Annotated[float, Parameter("Pa", "pressure p of the isotropic initial state", "(0, inf)")]
 InitialDensity = Annotated[
-    float, Parameter("kg/m3", "initial bulk density; 0 takes that of the parameter set at the initial pressure", "[0, inf)")
+    float,
+    Parameter("kg/m3", "initial bulk density; 0 takes that of the parameter set at the initial pressure", "[0, inf)"),
 ]
 GrainDensity = Annotated[
     float, Parameter("kg/m3", "density rho_p of the grains, for a law that does not declare it", "(0, inf)")
@@ -38,13 +42,13 @@ class ElementTest:
     """A homogeneous element test: its name, one line about it, its settings and the path that they describe.
 
     settings  NamedTuple class whose fields are annotated with `Parameter`, all with defaults
-    path      settings -> LoadingPath
+    path      settings -> the path to follow; a mixed control is one too
     """
 
     name: str
     summary: str
     settings: type[Any]
-    path: Callable[[Any], LoadingPath]
+    path: "Callable[[Any], LoadingPath | MixedControl]"
 
     @property
     def setting_declarations(self) -> dict[str, Parameter]:

@@ -15,10 +15,11 @@ from materials.registry import get_material
 
 @dataclass(frozen=True)
 class Specimen:
-    """A law, its parameter values (the law's NamedTuple) and a line that says where they came from."""
+    """A law, its parameter values (the law's NamedTuple), a short label, and a line on where the values came from."""
 
     law: Law
     parameters: Any
+    label: str
     source: str
 
     def density(self, pressure: float, stated: float) -> float:
@@ -45,27 +46,30 @@ def prepared(
     Raises InputError for an unknown law, set, file or name and for a value out of bounds.
     """
     law = get_material(law_name)
-    values, source = _base_values(law, parameters)
+    values, label, source = _base_values(law, parameters)
     of_law, of_test = _sorted_out(law, test, assignments)
     if of_law:
-        source += " with " + ", ".join(f"{name} = {value:g}" for name, value in of_law.items())
-    specimen = Specimen(law, checked_parameters(law.name, law.parameters, {**values, **of_law}), source)
-    shared = {name: getattr(specimen.parameters, name) for name in test.settings._fields if name in values | of_law}
+        changes = " with " + ", ".join(f"{name} = {value:g}" for name, value in of_law.items())
+        label, source = label + changes, source + changes
+    specimen = Specimen(law, checked_parameters(law.name, law.parameters, {**values, **of_law}), label, source)
+    shared = {name: value for name, value in specimen.parameters._asdict().items() if name in test.settings._fields}
     return specimen, checked_parameters(test.name, test.settings, {**of_test, **shared})
 
 
-def _base_values(law: Law, parameters: str | Path | None) -> tuple[dict[str, Any], str]:
+def _base_values(law: Law, parameters: str | Path | None) -> tuple[dict[str, Any], str, str]:
+    """Values by name before any assignment, a label for figures, and where the values came from."""
     if parameters is None:
         if not law.parameter_sets:
-            return {}, "values given one by one"
+            return {}, law.name, "values given one by one"
         parameters = next(iter(law.parameter_sets))
-    if str(parameters).endswith(".toml"):
-        return _read_values(Path(parameters)), f"file {parameters}"
     name = str(parameters)
+    label = f"{law.name} {Path(name).stem}"
+    if name.endswith(".toml"):
+        return _read_values(Path(name)), label, f"file {name}"
     if name not in law.parameter_sets:
         raise InputError(f"{law.name} has no parameter set '{name}'; {nearest_name(name, law.parameter_sets)}")
     found = law.parameter_sets[name]
-    return found.parameters._asdict(), f"set '{name}' ({found.source})"
+    return found.parameters._asdict(), label, f"set '{name}' ({found.source})"
 
 
 def _read_values(path: Path) -> dict[str, Any]:

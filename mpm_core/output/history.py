@@ -33,10 +33,12 @@ HISTORY_COLUMNS = (
     HistoryColumn("height", "m", "level above which lies one cell's worth of material, from the floor of the domain"),
     HistoryColumn("center_of_mass_height", "m", "height of the centre of mass above the floor of the domain"),
     HistoryColumn("kinetic_energy", "J/m", "kinetic energy per width"),
-    HistoryColumn("potential_energy", "J/m", "potential energy of gravity per width"),
+    HistoryColumn("potential_energy", "J/m", "potential energy of gravity per width relative to the start"),
     HistoryColumn("internal_work", "J/m", "work of the stress per width since the start"),
-    HistoryColumn("friction_work", "J/m", "work done against boundary friction per width since the start"),
-    HistoryColumn("numerical_dissipation", "J/m", "energy lost in the transfers per width since the start"),
+    HistoryColumn("wall_work", "J/m", "work done on the walls per width since the start: friction and what they stop"),
+    HistoryColumn(
+        "numerical_dissipation", "J/m", "energy that transfers and time integration took per width since the start"
+    ),
     HistoryColumn("step", "1", "number of the step", whole_number=True),
     HistoryColumn("wall_time", "s", "wall-clock time since the start of the run"),
 )

@@ -22,7 +22,7 @@ from mpm_core.output.run_folder import RunFolder
 from mpm_core.output.snapshots import draw_snapshots
 
 _UNITS = {column.name: column.unit for column in HISTORY_COLUMNS}
-_ENERGIES = ("kinetic_energy", "potential_energy", "internal_work", "friction_work", "numerical_dissipation")
+_ENERGIES = ("kinetic_energy", "potential_energy", "internal_work", "wall_work", "numerical_dissipation")
 _SPREADING = 1.1
 
 

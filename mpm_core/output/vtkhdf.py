@@ -10,7 +10,6 @@ them readable. Only the last moment, when HDF5 puts the new index into the file,
 run therefore writes the file anew from the VTU frames, which also drops the steps after the checkpoint.
 """
 
-from collections.abc import Iterable
 from pathlib import Path
 
 import h5py
@@ -28,26 +27,34 @@ _STEPS_PER_CHUNK = 1024
 def append_frame(path: Path, frame: Frame) -> None:
     """Append a frame to the file, which is created with its first frame; the number of points never changes."""
     if not path.exists():
-        rewrite(path, [frame])
+        with atomic.replacing(path) as partial, h5py.File(partial, "w", libver="earliest") as file:
+            root = file.create_group("VTKHDF")
+            _create_layout(root, frame)
+            _append(root, frame)
         return
     # A viewer that has the file open must not stop the run, so no lock is asked for.
     with h5py.File(path, "r+", locking=False) as file:
         _append(file["VTKHDF"], frame)
 
 
-def rewrite(path: Path, frames: Iterable[Frame]) -> None:
-    """Write the file anew with these frames; without any there is no file."""
-    remaining = iter(frames)
-    first = next(remaining, None)
-    if first is None:
-        path.unlink(missing_ok=True)
+def drop_after(path: Path, time: float) -> None:
+    """Cut off the frames later than `time` [s], that of the checkpoint from which the run resumes."""
+    if not path.exists():
         return
-    with atomic.replacing(path) as partial, h5py.File(partial, "w", libver="earliest") as file:
-        root = file.create_group("VTKHDF")
-        _create_layout(root, first)
-        _append(root, first)
-        for frame in remaining:
-            _append(root, frame)
+    with h5py.File(path, "r+", locking=False) as file:
+        root = file["VTKHDF"]
+        steps = root["Steps"]
+        kept = int(np.count_nonzero(steps["Values"][: int(steps.attrs["NSteps"])] <= time))
+        points = int(root["NumberOfPoints"][0])
+        steps.attrs["NSteps"] = kept
+        by_point = [root["Points"], *root["PointData"].values()]
+        by_step = [root["NumberOfPoints"], *(found for found in steps.values() if isinstance(found, h5py.Dataset))]
+        by_step += steps["PointDataOffsets"].values()
+        by_step += [root[kind][name] for kind in _CELL_KINDS for name in ("NumberOfCells", "NumberOfConnectivityIds")]
+        for dataset in by_step:
+            dataset.resize(kept, axis=0)
+        for dataset in by_point:
+            dataset.resize(kept * points, axis=0)
 
 
 def _create_layout(root: h5py.Group, frame: Frame) -> None:

@@ -1,0 +1,84 @@
+"""`checkpoint.h5`: the whole state of a run, from which it resumes bit for bit."""
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from materials import InputError
+from mpm_core.grid import Window
+from mpm_core.output import atomic
+from mpm_core.simulation import Ledger, Simulation
+
+CHECKPOINT_NAME = "checkpoint.h5"
+
+
+@dataclass
+class Clock:
+    """What the time loop remembers besides the simulation: next frame, next history row, wall time so far [s]."""
+
+    next_frame: int = 0
+    next_history: int = 0
+    wall_time: float = 0.0
+
+
+def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None:
+    """Replace the folder's checkpoint by the present state."""
+    scalars = {
+        "time": simulation.time,
+        "steps": simulation.steps,
+        "drift": simulation.drift,
+        "signal_speed": simulation.signal_speed,
+    }
+    with atomic.replacing(folder / CHECKPOINT_NAME) as partial, h5py.File(partial, "w") as file:
+        file.attrs.update(scalars)
+        for name, part in (("clock", clock), ("ledger", simulation.ledger), ("window", simulation.window)):
+            file.create_group(name).attrs.update(asdict(part))
+        for number, body in enumerate(simulation.bodies):
+            group = file.create_group(f"body/{number}")
+            group.create_dataset("points", data=body.points)
+            group.create_dataset("ids", data=body.ids)
+            group.create_dataset("stripe_starts", data=body.stripe_starts)
+            group.attrs.update(law=body.law.name, columns=", ".join(body.column_names))
+
+
+def read_checkpoint(folder: Path, simulation: Simulation) -> Clock:
+    """Bring a simulation, built from the same scene, to the state of the folder's checkpoint.
+
+    Raises InputError if there is none, if it cannot be read or belongs to another scene.
+    """
+    path = folder / CHECKPOINT_NAME
+    if not path.is_file():
+        raise InputError(f"{folder} holds no {CHECKPOINT_NAME} to resume from")
+    try:
+        with h5py.File(path) as file:
+            return _restore(file, simulation)
+    except (OSError, KeyError) as error:
+        raise InputError(f"{path} cannot be read: {error}") from error
+    except ValueError as error:
+        raise InputError(f"{path} belongs to another scene: {error}") from error
+
+
+def _restore(file: h5py.File, simulation: Simulation) -> Clock:
+    for number, body in enumerate(simulation.bodies):
+        group = file[f"body/{number}"]
+        if group["points"].shape != body.points.shape:
+            raise ValueError(f"body {number} has {group['points'].shape} values, not {body.points.shape}")
+        body.points[:] = group["points"][:]
+        body.ids = group["ids"][:]
+        body.stripe_starts = group["stripe_starts"][:]
+        body.share_between(simulation.threads)
+    simulation.time = float(file.attrs["time"])
+    simulation.steps = int(file.attrs["steps"])
+    simulation.drift = float(file.attrs["drift"])
+    simulation.signal_speed = float(file.attrs["signal_speed"])
+    simulation.window = Window(**_numbers(file["window"], int))
+    simulation.ledger = Ledger(**_numbers(file["ledger"], float))
+    clock = file["clock"].attrs
+    return Clock(int(clock["next_frame"]), int(clock["next_history"]), float(clock["wall_time"]))
+
+
+def _numbers(group: h5py.Group, kind: type) -> dict[str, Any]:
+    return {name: kind(np.asarray(value).item()) for name, value in group.attrs.items()}
