@@ -6,8 +6,10 @@ from typing import Annotated
 
 import typer
 
+from grainlaw.compare_command import compare
 from grainlaw.element_command import element
 from grainlaw.materials_command import materials
+from grainlaw.plan_command import plan
 from grainlaw.run_command import run
 from materials import InputError, SimulationError
 
@@ -22,6 +24,8 @@ app = typer.Typer(
 app.command("materials")(materials)
 app.command("element")(element)
 app.command("run")(run)
+app.command("plan")(plan)
+app.command("compare")(compare)
 
 
 def _print_version(wanted: bool) -> None:

@@ -16,12 +16,14 @@ def run(
     scene_file: SceneFile,
     set_values: SetValues = None,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the run; default: runs/NAME of the scene file.")
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder of the run; default: runs/NAME of the scene file."),
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the folder's checkpoint.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the run that the folder holds.")] = False,
     threads: Annotated[
-        int | None, typer.Option("--threads", min=1, metavar="N", help="Threads; default: all cores. Same bits for any.")
+        int | None,
+        typer.Option("--threads", min=1, metavar="N", help="Threads; default: all cores. Same bits for any."),
     ] = None,
     plugins: PluginFiles = None,
 ) -> None:
@@ -49,8 +51,8 @@ def _print_result(folder: Path, summary: "RunSummary") -> None:
         f"({summary.point_steps_per_second / 1e6:.1f} million point-steps/s on {summary.threads} threads)"
     )
     typer.echo(
-        f"runout {final.runout:.4f} m, height {final.height:.4f} m, centre of mass {final.center_of_mass_height:.4f} m, "
-        f"kinetic energy {final.kinetic_energy:.3g} J/m"
+        f"runout {final.runout:.4f} m, height {final.height:.4f} m, "
+        f"centre of mass {final.center_of_mass_height:.4f} m, kinetic energy {final.kinetic_energy:.3g} J/m"
     )
     for name in ("run.pvd", "run.vtkhdf", "history.csv", "summary.json"):
         if (folder / name).exists():

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE.toml", help="Scene file.", show_default=False)]
 SetValues = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="PATH=VALUE", help="Set a value of the scene, such as grid.cell_size=0.0125; repeatable."),
+    typer.Option(
+        "--set", metavar="PATH=VALUE", help="Set a value of the scene, such as grid.cell_size=0.0125; repeatable."
+    ),
 ]
 
 

@@ -24,7 +24,7 @@ from materials.pointwise import MARKED
 
 @cache
 def _register_marked(function: Callable[..., Any]) -> Callable[..., Any]:
-    return register_jitable(function)
+    return register_jitable(forceinline=True)(function)
 
 
 def _register_helpers() -> None:

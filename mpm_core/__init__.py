@@ -1,4 +1,4 @@
-"""The Material Point Method: points, grid, transfer, boundary, step, scene, output. Knows laws only through materials."""
+"""The Material Point Method: points, grid, transfer, boundary, step, scene, output."""
 
 from mpm_core.run import run
 from mpm_core.scene import Scene

@@ -1,13 +1,13 @@
 """B-spline shape functions on a regular grid, in units of the cell size.
 
 Each basis gives, for a point at the distance f from the first node of its stencil, the weights of the `width` nodes
-along one axis, and the second moment sum(w (i - f)^2), by which the affine transfer and the moving-least-squares gradient
-are scaled (Jiang et al. 2015; Hu et al. 2018).
+along one axis, and the second moment sum(w (i - f)^2), by which the affine transfer and the moving-least-squares
+gradient are scaled (Jiang et al. 2015; Hu et al. 2018).
 
-A wall lies on a line of nodes, and stencils of points near it reach a ghost node beyond. The ghost's velocity is tied to
-the two nodes inside by linear extrapolation, v_ghost = 2 v_wall - v_inside, which changes the weights: twice the ghost's
-weight goes to the wall node and minus its weight to the node inside. The weights that remain interpolate at the wall and
-reproduce linear fields, so that no order is lost to the wall; the second moment loses twice the ghost's weight.
+A wall lies on a line of nodes, and stencils of points near it reach a ghost node beyond. The ghost's velocity is tied
+to the two nodes inside by linear extrapolation, v_ghost = 2 v_wall - v_inside, which changes the weights: twice the
+ghost's weight goes to the wall node and minus its weight to the node inside. The weights that remain interpolate at the
+wall and reproduce linear fields, so that no order is lost to it; the second moment loses twice the ghost's weight.
 """
 
 from collections.abc import Callable

@@ -28,8 +28,8 @@ def run(
 ) -> RunSummary:
     """Run a scene and write its folder; `progress(simulation, dt)` is called after each step.
 
-    Raises InputError for what cannot be run or would overwrite a run, and SimulationError, naming the time, the point and
-    the last checkpoint, where the computation goes wrong.
+    Raises InputError for what cannot be run or would overwrite a run, and SimulationError, naming the time, the point
+    and the last checkpoint, where the computation goes wrong.
     """
     started = time.perf_counter()
     simulation = Simulation(scene, threads)
@@ -80,8 +80,8 @@ def _advance(simulation: Simulation, recorder: Recorder, started: float, progres
 def next_step(simulation: Simulation, target: float) -> tuple[float, float | None]:
     """The next time step [s], and the time of arrival if it ends on the target.
 
-    The step is the stable one times the safety factor, or the fixed one, shortened so that a whole number of equal steps
-    leads to the target. Raises SimulationError below the smallest step, or if the fixed step has become unstable.
+    The step is the stable one times the safety factor, or the fixed one, shortened so that a whole number of equal
+    steps leads to the target. Raises SimulationError below the smallest step, or if the fixed step has become unstable.
     """
     settings, stable = simulation.scene.time, simulation.stable_step()
     largest = settings.step or settings.safety * stable

@@ -105,7 +105,7 @@ class TransferSection(Section):
     basis: Literal["linear", "quadratic", "cubic"] = Field(default="quadratic", description="B-spline shape functions")
     scheme: Literal["affine_flip", "apic"] = Field(
         default="affine_flip",
-        description="affine_flip keeps velocities below the grid's resolution for `time_constant`; apic drops them at once",
+        description="affine_flip keeps velocities below the grid's resolution for `time_constant`; apic drops them",
     )
     time_constant: float = Field(
         default=0.01, gt=0, description="decay time of velocities below the grid's resolution [s]; affine_flip only"
@@ -147,8 +147,8 @@ class OutputSection(Section):
     )
     fields: list[str] | None = Field(
         default=None,
-        description="fields of each frame; default: velocity, pressure, deviatoric_stress, shear_strain, solid_fraction "
-        "where the law knows the grain density, and the state variables that the law marks for output",
+        description="fields of each frame; default: velocity, pressure, deviatoric_stress, shear_strain, "
+        "solid_fraction where the law knows the grain density, and the state variables that the law marks for output",
     )
     vtu: bool = Field(default=True, description="write points_NNNNNN.vtu and run.pvd")
     vtkhdf: bool = Field(default=False, description="write all frames to one run.vtkhdf")

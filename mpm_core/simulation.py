@@ -12,13 +12,13 @@ from mpm_core import momentum
 from mpm_core.basis import BASES
 from mpm_core.body import Body
 from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, join_periodic
-from mpm_core.columns import X, Y
+from mpm_core.columns import LXX, LYY, X, Y
 from mpm_core.fields import chosen_fields
 from mpm_core.grid import Grid, Window
 from mpm_core.initial import build_bodies
 from mpm_core.scene import Scene
 from mpm_core.sorting import LONGEST_DRIFT
-from mpm_core.stress import BAD_POINT, INTERNAL_WORK, MAX_SIGNAL_SPEED
+from mpm_core.stress import INTERNAL_WORK, MAX_INCREMENT, MAX_SIGNAL_SPEED
 from mpm_core.transfer import (
     HIGHEST_X,
     HIGHEST_Y,
@@ -29,6 +29,9 @@ from mpm_core.transfer import (
     MOVED_X,
     MOVED_Y,
 )
+
+# A volumetric strain increment beyond which no explicit step can be right.
+LARGEST_INCREMENT = 0.5
 
 
 @dataclass
@@ -116,9 +119,8 @@ class Simulation:
 
     def _take_reports(self, dt: float) -> None:
         for body in self.bodies:
-            bad = body.stress_reports[:, BAD_POINT].max()
-            if bad >= 0:
-                self._fail(body, int(bad), "the stress is not finite, or the volume changed by half in one step")
+            if not body.stress_reports[:, MAX_INCREMENT].max() < LARGEST_INCREMENT:
+                self._fail_unsound(body, dt)
         reports = np.concatenate([body.transfer_reports for body in self.bodies])
         lower = (float(reports[:, LOWEST_X].min()), float(reports[:, LOWEST_Y].min()))
         upper = (float(reports[:, HIGHEST_X].max()), float(reports[:, HIGHEST_Y].max()))
@@ -159,6 +161,14 @@ class Simulation:
             outside = (coordinate < self.grid.lower[axis]) | (coordinate > self.grid.upper[axis])
             if outside.any():
                 self._fail(body, int(np.argmax(outside)), "the point has left the domain")
+
+    def _fail_unsound(self, body: Body, dt: float) -> None:
+        finite = np.isfinite(body.points).all(axis=0)
+        if not finite.all():
+            self._fail(body, int(np.argmin(finite)), "the stress or another quantity is not finite")
+        increments = dt * np.abs(body.points[LXX] + body.points[LYY])
+        worst = int(np.argmax(increments))
+        self._fail(body, worst, f"its volume changed by {increments[worst]:.0%} in one step of {dt:.3g} s")
 
     def _fail(self, body: Body, point: int, reason: str) -> None:
         x, y = body.points[X, point], body.points[Y, point]

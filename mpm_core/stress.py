@@ -32,11 +32,8 @@ from mpm_core.columns import (
 from mpm_core.transfer import BLOCK, FAST
 
 # What `stress_pass` reports for each block of points.
-MAX_SIGNAL_SPEED, INTERNAL_WORK, BAD_POINT = range(3)
+MAX_SIGNAL_SPEED, INTERNAL_WORK, MAX_INCREMENT = range(3)
 REPORTS = 3
-
-# A volumetric strain increment per step beyond which no explicit step can be right.
-LARGEST_INCREMENT = 0.5
 
 
 @register_jitable
@@ -93,47 +90,73 @@ def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
     return mean + turned, mean - turned, half * sine_2 + sxy * cosine_2
 
 
+@register_jitable
+def ordered_bits(value):  # type: ignore[no-untyped-def]
+    """The bits of a non-negative float as an integer: the same order, and NaN above everything.
+
+    A maximum of integers is vectorised and keeps NaN; a maximum of floats does one or the other.
+    """
+    return np.float64(value).view(np.int64)
+
+
 def make_stress_pass(law: PointwiseLaw, state_class: type[Any], keeps_shear_strain: bool) -> Callable[..., Any]:
     """The stress pass of a law.
 
-    Reports per block of points: the largest signal speed c + |v| [m/s], the work of the stress on the strain [J], and
-    the index of a point whose result is not finite or whose volume changes too much in one step (-1: none).
+    Reports per block of points: the largest signal speed c + |v| [m/s], the work of the stress on the strain [J/m], and
+    the largest volumetric strain increment of the step. Where anything is not finite, the last one is NaN.
     """
     update, sound_speed, source_hash = law.update, law.sound_speed, law.source_hash
     load, store = make_state_access(state_class)
 
+    @register_jitable
+    def update_block(  # type: ignore[no-untyped-def]
+        vx, vy, lxx, lxy, lyx, lyy, sxx, syy, szz, sxy, density, shear_strain, states, parameters, dt
+    ):
+        work = 0.0
+        fastest, largest = np.int64(0), np.int64(0)
+        for p in range(len(vx)):
+            strain_rate = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
+            xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
+            half_increment = 0.5 * dt * (lxx[p] + lyy[p])
+            new_density = density[p] * (1.0 - half_increment) / (1.0 + half_increment)
+            old_stress = SymmetricTensor(xx, yy, szz[p], xy, 0.0, 0.0)
+            stress, state = update(old_stress, strain_rate, new_density, load(states, p), parameters, dt)
+            store(states, p, state)
+            work += contraction(added(old_stress, stress), strain_rate) / (density[p] + new_density)
+            sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
+            density[p] = new_density
+            if keeps_shear_strain:
+                shear_strain[p] += dt * shear_strain_rate(strain_rate)
+            signal_speed = sound_speed(stress, new_density, state, parameters) + np.sqrt(vx[p] * vx[p] + vy[p] * vy[p])
+            fastest = max(fastest, ordered_bits(signal_speed))
+            not_finite = 0.0 * (stress.xx + stress.yy + stress.zz + stress.xy + signal_speed)
+            largest = max(largest, ordered_bits(abs(2.0 * half_increment + not_finite)))
+        return fastest, work, largest
+
     @njit(parallel=True, fastmath=FAST, error_model="numpy", cache=True)
     def stress_pass(points, point_mass, parameters, dt, reports):  # type: ignore[no-untyped-def]
-        vx, vy = points[VX], points[VY]
-        lxx, lxy, lyx, lyy = points[LXX], points[LXY], points[LYX], points[LYY]
-        sxx, syy, szz, sxy = points[SXX], points[SYY], points[SZZ], points[SXY]
-        density, shear_strain = points[DENSITY], points[SHEAR_STRAIN]
-        states = points[FIRST_STATE:]
-        count = points.shape[1]
+        assert source_hash
         for block in prange(reports.shape[0]):
-            fastest, work, bad = 0.0 * source_hash, 0.0, -1
-            for p in range(block * BLOCK, min(count, (block + 1) * BLOCK)):
-                strain_rate = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-                xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
-                half_increment = 0.5 * dt * (lxx[p] + lyy[p])
-                new_density = density[p] * (1.0 - half_increment) / (1.0 + half_increment)
-                old_stress = SymmetricTensor(xx, yy, szz[p], xy, 0.0, 0.0)
-                state = load(states, p)
-                stress, state = update(old_stress, strain_rate, new_density, state, parameters, dt)
-                store(states, p, state)
-                mean_density = 0.5 * (density[p] + new_density)
-                work += 0.5 * contraction(added(old_stress, stress), strain_rate) / mean_density
-                sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
-                density[p] = new_density
-                if keeps_shear_strain:
-                    shear_strain[p] += dt * shear_strain_rate(strain_rate)
-                speed = np.sqrt(vx[p] * vx[p] + vy[p] * vy[p])
-                fastest = max(fastest, sound_speed(stress, new_density, state, parameters) + speed)
-                sound = np.isfinite(stress.xx + stress.yy + stress.xy + speed)
-                if not (sound and abs(half_increment) < 0.5 * LARGEST_INCREMENT):
-                    bad = p
-            reports[block, MAX_SIGNAL_SPEED] = fastest
+            rows = points[:, block * BLOCK : (block + 1) * BLOCK]
+            fastest, work, largest = update_block(
+                rows[VX],
+                rows[VY],
+                rows[LXX],
+                rows[LXY],
+                rows[LYX],
+                rows[LYY],
+                rows[SXX],
+                rows[SYY],
+                rows[SZZ],
+                rows[SXY],
+                rows[DENSITY],
+                rows[SHEAR_STRAIN],
+                rows[FIRST_STATE:],
+                parameters,
+                dt,
+            )
+            reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
             reports[block, INTERNAL_WORK] = point_mass * dt * work
-            reports[block, BAD_POINT] = bad
+            reports[block, MAX_INCREMENT] = np.int64(largest).view(np.float64)
 
     return stress_pass

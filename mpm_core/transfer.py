@@ -1,15 +1,15 @@
 """The two transfers of the Material Point Method. They know points, nodes and shape functions, but no law.
 
 Affine particle-in-cell transfer (Jiang et al. 2015) with the moving-least-squares gradient (Hu et al. 2018): one
-matrix per point, L = sum_i w_i v_i (x_i - x_p)^T / D, is both its affine velocity field and its velocity gradient. On top of it
-the point keeps what the grid did not resolve of its velocity, v_p - sum_i w_i v_i, for a time constant tau:
+matrix per point, L = sum_i w_i v_i (x_i - x_p)^T / D, is both its affine velocity field and its velocity gradient. On
+top of it the point keeps what the grid did not resolve of its velocity, v_p - sum_i w_i v_i, for a time constant tau:
 
     v_p <- sum_i w_i v_i^new + exp(-dt/tau) (v_p - sum_i w_i v_i^old)
 
 so that tau = 0 is APIC, tau = infinity affine FLIP, and the loss per second does not depend on the step.
 
-Points come in stripes of grid columns (`sorting`). Stripes of even number are scattered first, then those of odd number:
-within each half no two stripes share a node, so that the sums come out the same for any number of threads.
+Points come in stripes of grid columns (`sorting`). Stripes of even number are scattered first, then those of odd
+number: within each half no two stripes share a node, so that the sums come out the same for any number of threads.
 """
 
 from collections.abc import Callable

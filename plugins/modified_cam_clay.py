@@ -46,7 +46,7 @@ from materials import (
     volumetric_strain_rate,
 )
 
-TOLERANCE = 1e-12
+TOLERANCE = 1e-11
 MAXIMUM_ITERATIONS = 100
 
 
@@ -139,8 +139,9 @@ def cam_clay_step(
 ) -> tuple[float, float, SymmetricTensor]:
     """One strain increment in contact: the new p, p_c and s."""
     growth = compression / parameters.swelling_index
-    p = start_pressure * math.exp(growth)
-    modulus = shear_modulus(p * mean_over_path(growth) / parameters.swelling_index, parameters.poisson_ratio)
+    factor = math.exp(growth)
+    p = start_pressure * factor
+    modulus = shear_modulus(p * mean_over_path(growth, factor) / parameters.swelling_index, parameters.poisson_ratio)
     s = added(start_deviator, scaled(shear, 2.0 * modulus))
     m = parameters.critical_state_ratio
     if 1.5 * contraction(s, s) / (m * m) <= p * (preconsolidation_pressure - p):
@@ -151,11 +152,19 @@ def cam_clay_step(
 
 
 @pointwise
-def mean_over_path(growth: float) -> float:
-    """Mean pressure over final pressure when ln p grows linearly by `growth`: (1 - exp(-growth))/growth."""
-    if abs(growth) < 1e-5:
-        return 1.0 - 0.5 * growth
-    return -math.expm1(-growth) / growth
+def mean_over_path(growth: float, factor: float) -> float:
+    """Mean over final value of what grows by factor = exp(growth): (1 - exp(-growth))/growth."""
+    if abs(growth) < 1e-2:
+        return 1.0 - growth / 2.0 * (1.0 - growth / 3.0 * (1.0 - growth / 4.0 * (1.0 - growth / 5.0)))
+    return (1.0 - 1.0 / factor) / growth
+
+
+@pointwise
+def log_derivative_of_mean(growth: float, factor: float) -> float:
+    """d ln(mean_over_path)/d(growth)."""
+    if abs(growth) < 1e-2:
+        return -0.5 + growth / 12.0
+    return 1.0 / (factor - 1.0) - 1.0 / growth
 
 
 @pointwise
@@ -197,7 +206,7 @@ def yield_state(
     shear: SymmetricTensor,
     parameters: Parameters,
 ) -> YieldState:
-    """Residual of F = 0 at theta, and its derivative with respect to 1/theta - 1.
+    """Residual of F = 0 at theta, and its derivative with respect to the multiplier 1/theta - 1.
 
     With W = p_c/p - 1 and N = 6 G Lambda/M^2 (by which the flow rule shrinks s), F = 0 reads
     (q_trial/(M p))^2 = (1 + N)^2 W.
@@ -206,52 +215,40 @@ def yield_state(
     kappa = parameters.swelling_index
     total_slope = 1.0 / kappa + 1.0 / (parameters.compression_index - kappa)
     elastic_share = 1.0 / (kappa * total_slope)
+    stiffness = shear_modulus(1.0 / kappa, parameters.poisson_ratio)
 
     z = wetness * theta
+    z_factor = math.exp(z)
     log_growth = growth - elastic_share * wetness * (1.0 - theta)
-    p = start_pressure * math.exp(log_growth)
-    p_c = 2.0 * p * math.exp(-z)
+    factor = math.exp(log_growth)
+    p = start_pressure * factor
+    p_c = 2.0 * p / z_factor
     w = p_c / p - 1.0
 
-    modulus_ratio = shear_modulus(1.0 / kappa, parameters.poisson_ratio)
-    mean_ratio = mean_over_path(log_growth)
-    s = added(scaled(start_deviator, 1.0 / p), scaled(shear, 2.0 * modulus_ratio * mean_ratio))
+    mean_modulus = stiffness * mean_over_path(log_growth, factor)
+    s = added(scaled(start_deviator, 1.0 / p), scaled(shear, 2.0 * mean_modulus))
     trial_squared = 1.5 * contraction(s, s) / m_squared
+    slope = 3.0 * mean_modulus / (mean_over_path(z, z_factor) * total_slope * m_squared)
+    n = slope * (1.0 / theta - 1.0)
 
-    h = 1.0 / mean_over_path(z)
-    multiplier = 1.0 / theta - 1.0
-    slope = 3.0 * modulus_ratio * mean_ratio * h / (total_slope * m_squared)
-    n = slope * multiplier
-
-    # Derivatives with respect to the multiplier 1/theta - 1.
     dz = -z * theta
     dlog_p = elastic_share * dz
-    ds = added(
-        scaled(start_deviator, -1.0 / p),
-        scaled(shear, 2.0 * modulus_ratio * mean_ratio * log_derivative_of_mean(log_growth)),
-    )
+    dlog_mean = log_derivative_of_mean(log_growth, factor)
+    ds = added(scaled(start_deviator, -1.0 / p), scaled(shear, 2.0 * mean_modulus * dlog_mean))
     dtrial_squared = 3.0 * contraction(s, ds) / m_squared * dlog_p
-    dn = slope + n * (log_derivative_of_mean(log_growth) * dlog_p - log_derivative_of_mean(z) * dz)
+    dn = slope + n * (dlog_mean * dlog_p - log_derivative_of_mean(z, z_factor) * dz)
     dw = -(w + 1.0) * dz
 
     # Near critical state the square root of both sides is almost linear in the multiplier; at W = 0 it has no slope.
     if w > 0.1:
-        trial, shrunk = math.sqrt(trial_squared), (1.0 + n) * math.sqrt(w)
-        residual = trial - shrunk
-        derivative = 0.5 * dtrial_squared / max(trial, 1e-300) - dn * math.sqrt(w) - 0.5 * (1.0 + n) * dw / math.sqrt(w)
+        trial, root = math.sqrt(trial_squared), math.sqrt(w)
+        residual = trial - (1.0 + n) * root
+        derivative = 0.5 * dtrial_squared / max(trial, 1e-300) - dn * root - 0.5 * (1.0 + n) * dw / root
     else:
         residual = trial_squared - (1.0 + n) * (1.0 + n) * w
         derivative = dtrial_squared - (1.0 + n) * (2.0 * dn * w + (1.0 + n) * dw)
     yield_function = (trial_squared / ((1.0 + n) * (1.0 + n)) - w) * p * p
-    return YieldState(p, p_c, modulus_ratio * mean_ratio * p, n, yield_function, residual, derivative)
-
-
-@pointwise
-def log_derivative_of_mean(growth: float) -> float:
-    """D ln(mean_over_path)/d(growth)."""
-    if abs(growth) < 1e-5:
-        return growth / 12.0 - 0.5
-    return 1.0 / math.expm1(growth) - 1.0 / growth
+    return YieldState(p, p_c, mean_modulus * p, n, yield_function, residual, derivative)
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

@@ -1,4 +1,4 @@
-"""Modified Cam Clay against its closed solutions: M 1.2, lambda 0.10, kappa 0.02 (in ln v - ln p), nu 0.3, p0 200 kPa."""
+"""Modified Cam Clay against its closed solutions: M 1.2, lambda 0.10, kappa 0.02, nu 0.3, p0 200 kPa."""
 
 import math
 
@@ -66,8 +66,7 @@ def undrained_pressure(eta):
 def test_drained_path_passes_the_golden_state_at_a_shear_strain_of_a_tenth():
     result = element_test("triaxial-drained", final_strain=0.15, time_step=2e-3)
     shear, volumetric = (
-        np.interp(0.1, shear_strain(result), values)
-        for values in (result.deviatoric_stress, volumetric_strain(result))
+        np.interp(0.1, shear_strain(result), values) for values in (result.deviatoric_stress, volumetric_strain(result))
     )
     assert shear == pytest.approx(272.288e3, rel=1e-3)
     assert volumetric == pytest.approx(0.07547, rel=1e-3)

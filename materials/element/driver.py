@@ -27,6 +27,8 @@ from materials.tensor import added, contraction, scaled, trace
 # Relative to the target: 1e-7 Pa at 1000 Pa, still far above the round-off of a law that is stiff in the density.
 CONTROL_TOLERANCE = 1e-10
 MAXIMUM_ITERATIONS = 200
+# Share of the prescribed rate by which x first moves while its slope is unknown.
+FIRST_REACH = 0.1
 
 register_jitable(search_from)
 register_jitable(narrowed)
@@ -35,7 +37,7 @@ register_jitable(narrowed)
 def make_advance(law: PointwiseLaw) -> Any:
     """The compiled loop over the steps of a path, for one law.
 
-    advance(point, parameters, dt, rates, direction, free, held, target, rate_scale) -> (point, steps done); it stops
+    advance(point, parameters, dt, rates, direction, free, held, target) -> (point, steps done); it stops
     before the first step whose control does not converge.
     """
     update, source_hash = law.update, law.source_hash
@@ -43,20 +45,20 @@ def make_advance(law: PointwiseLaw) -> Any:
     search_hash = int.from_bytes(hashlib.sha256(Path(search_module.__file__).read_bytes()).digest()[:7], "big")
 
     @njit(cache=True)
-    def advance(point, parameters, dt, rates, direction, free, held, target, rate_scale):  # type: ignore[no-untyped-def]
+    def advance(point, parameters, dt, rates, direction, free, held, target):  # type: ignore[no-untyped-def]
         assert source_hash
         assert search_hash
         is_controlled = contraction(free, free) > 0.0
         tolerance = CONTROL_TOLERANCE * abs(target)
         for step in range(rates.size):
             prescribed = scaled(direction, rates[step])
-            search = search_from(point.search.x, point.search.slope, rate_scale)
+            search = search_from(point.search.x, point.search.slope, FIRST_REACH * abs(rates[step]))
             for _ in range(MAXIMUM_ITERATIONS):
                 strain_rate = added(prescribed, scaled(free, search.x))
                 density = point.density * math.exp(-trace(strain_rate) * dt)
                 stress, state = update(point.stress, strain_rate, density, point.state, parameters, dt)
                 residual = contraction(held, stress) - target
-                if not is_controlled or not abs(residual) > tolerance:
+                if not is_controlled or abs(residual) <= tolerance:
                     break
                 search = narrowed(search, residual)
             if is_controlled and not abs(residual) <= tolerance:
@@ -74,10 +76,13 @@ def follow_path(specimen: Specimen, path: LoadingPath, point: Point, stride: int
     Raises SimulationError, with the time, if a held stress cannot be reached or the stress is not finite.
     """
     advance = make_advance(pointwise_law(specimen.law))
-    control = (path.direction, path.free, path.held, path.target, float(np.max(np.abs(path.rates))))
+    control = (path.direction, path.free, path.held, path.target)
     for start in range(0, path.steps, stride):
         rates = path.rates[start : start + stride]
-        point, done = explained(specimen.law, advance, point, specimen.parameters, path.dt, rates, *control)
+        try:
+            point, done = explained(specimen.law, advance, point, specimen.parameters, path.dt, rates, *control)
+        except ArithmeticError as error:
+            raise SimulationError(f"{specimen.law.name}: {error} after t = {point.time:g} s") from error
         step = start + done
         point = point._replace(time=step * path.dt)
         if done < rates.size:

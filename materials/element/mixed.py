@@ -86,7 +86,9 @@ def read_control(path: Path) -> MixedControl:
 
 
 def _first_fault(error: ValidationError) -> str:
-    fault = error.errors()[0]
+    # A misspelt key explains the missing one better than the other way round.
+    faults = error.errors()
+    fault = next((found for found in faults if found["type"] == "extra_forbidden"), faults[0])
     key = ".".join(str(part) for part in fault["loc"] if part != "[key]")
     if fault["type"] == "extra_forbidden":
         model = MixedControl if len(fault["loc"]) == 1 else Stage

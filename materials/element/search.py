@@ -24,6 +24,12 @@ def search_from(x: float, slope: float, expansion: float) -> Search:
 def narrowed(search: Search, residual: float) -> Search:
     """The search after the residual at search.x: by secant where that helps, else by bisection or by a longer reach."""
     x, slope, expansion = search.x, search.slope, search.expansion
+    if math.isnan(residual):
+        # Too far out for the function: go half of the way back.
+        halfway = 0.5 * (x + search.previous_x)
+        return Search(
+            halfway, slope, search.lower, search.upper, 0.25 * expansion, search.previous_x, search.previous_residual
+        )
     lower = x if residual < 0.0 else search.lower
     upper = x if residual > 0.0 else search.upper
     stalled = abs(residual) > 0.5 * abs(search.previous_residual)

@@ -1,0 +1,67 @@
+"""`grainlaw compare`: finished runs side by side."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from mpm_core.output.run_folder import RunFolder
+
+
+def compare(
+    folders: Annotated[
+        list[Path], typer.Argument(metavar="DIR...", help="Folders of finished runs.", show_default=False)
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Also draw snapshots.png and history.png into this folder."),
+    ] = None,
+    field: Annotated[str, typer.Option("--field", help="Field of the snapshots.")] = "shear_strain",
+) -> None:
+    """Print a table of the final states, and draw the snapshots at equal normalised runout (the paper's Figure 2)."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from mpm_core.output.run_folder import RunFolder
+
+    runs = [(folder.name, RunFolder(folder)) for folder in folders]
+    table = Table()
+    for heading in (
+        "run",
+        "law",
+        "points",
+        "runout [m]",
+        "height [m]",
+        "centre of mass [m]",
+        "kinetic [J/m]",
+        "wall [s]",
+    ):
+        table.add_column(heading, justify="left" if heading in ("run", "law") else "right")
+    for name, run in runs:
+        summary = run.summary
+        final = summary.final
+        table.add_row(
+            name,
+            summary.material,
+            f"{summary.points:,}",
+            f"{final.runout:.4f}",
+            f"{final.height:.4f}",
+            f"{final.center_of_mass_height:.4f}",
+            f"{final.kinetic_energy:.3g}",
+            f"{summary.wall_time:.1f}",
+        )
+    Console(width=120).print(table)
+    if out is not None:
+        _draw(runs, out, field)
+
+
+def _draw(runs: list[tuple[str, "RunFolder"]], out: Path, field: str) -> None:
+    from mpm_core.output.pictures import draw_history, draw_snapshots
+
+    out.mkdir(parents=True, exist_ok=True)
+    limits = (0.0, 3.0) if field == "shear_strain" else None
+    draw_snapshots(runs, out / "snapshots.png", field, limits)
+    draw_history(runs, out / "history.png")
+    for picture in ("snapshots.png", "history.png"):
+        typer.echo(f"  {out / picture}")

@@ -1,0 +1,46 @@
+"""`grainlaw plan`: what a scene will use and cost."""
+
+from typing import Annotated
+
+import typer
+
+from grainlaw.options import PluginFiles, load_plugins
+from grainlaw.scene_options import SceneFile, SetValues, load_scene
+
+
+def plan(
+    scene_file: SceneFile,
+    set_values: SetValues = None,
+    threads: Annotated[int | None, typer.Option("--threads", min=1, metavar="N", help="Threads; default: all.")] = None,
+    plugins: PluginFiles = None,
+) -> None:
+    """Print size, memory, time step and expected duration of a scene without running it."""
+    load_plugins(plugins)
+    scene = load_scene(scene_file, set_values)
+
+    from rich.console import Console
+    from rich.table import Table
+
+    from mpm_core.plan import plan as plan_scene
+    from mpm_core.threads import usable_threads
+
+    planned = plan_scene(scene, usable_threads(threads))
+    table = Table(title=scene.title or scene_file.stem, show_header=False)
+    rows = {
+        "laws": ", ".join(planned.laws),
+        "points": f"{planned.points:,}",
+        "cells of the domain": f"{planned.cells:,}",
+        "nodes in reach of the material": f"{planned.nodes_in_reach:,}",
+        "memory": f"{planned.memory_bytes / 1e6:.1f} MB ({planned.bytes_per_point:.0f} bytes per point)",
+        "basis, transfer": f"{scene.transfer.basis}, {scene.transfer.scheme}",
+        "time step": f"{planned.step:.3g} s (stable: {planned.stable_step:.3g} s)",
+        "steps": f"about {planned.steps:,}",
+        "rate": f"{planned.points / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "
+        f"{planned.threads} threads",
+        "expected duration": f"{planned.wall_time:.0f} s at the sound speed of the start",
+        "frames": f"{planned.frames}",
+        "fields of a frame": ", ".join(planned.fields),
+    }
+    for name, value in rows.items():
+        table.add_row(name, value)
+    Console(width=110).print(table)

@@ -1,0 +1,121 @@
+"""Small scenes for the tests of the core, and the command line called from within the tests."""
+
+import copy
+import sys
+
+import numpy as np
+import pytest
+import tomli_w
+
+from mpm_core import Scene, Simulation
+from mpm_core.columns import LXX, LYY, VX, VY, X, Y
+from mpm_core.grid import COMPONENTS, MASS, OLD_VX, OLD_VY
+
+ELASTIC = {"bulk_modulus": 1e4, "poisson_ratio": 0.2}
+MU_I_LC = {
+    "static_friction": 0.69,
+    "dynamic_friction": 1.25,
+    "inertial_number_constant": 0.279,
+    "bulk_modulus": 2e4,
+    "poisson_ratio": 0.2,
+    "grain_density": 2450.0,
+    "grain_diameter": 0.005,
+}
+CAM_CLAY = {
+    "critical_state_ratio": 1.2,
+    "compression_index": 0.04,
+    "swelling_index": 0.008,
+    "poisson_ratio": 0.2,
+    "overconsolidation_ratio": 1.0,
+    "grain_density": 2450.0,
+}
+
+# An elastic block of 4 x 4 cells in the middle of a box of 10 x 8 cells, without gravity.
+BLOCK = {
+    "title": "block",
+    "gravity": [0.0, 0.0],
+    "grid": {"cell_size": 0.1, "upper": [1.0, 0.8]},
+    "time": {"end": 0.1},
+    "material": {"linear_elastic": ELASTIC},
+    "body": [
+        {
+            "material": "linear_elastic",
+            "shape": {"kind": "rectangle", "lower": [0.3, 0.2], "upper": [0.7, 0.6]},
+            "density": 1000.0,
+        }
+    ],
+}
+
+# A column of mu(I)-LC, 12 cells wide and 32 high, that falls apart quickly.
+COLUMN = {
+    "title": "column",
+    "gravity": [0.0, -9.8],
+    "grid": {"cell_size": 0.025, "upper": [3.2, 1.0]},
+    "time": {"end": 0.3},
+    "boundary": {"bottom": {"kind": "friction", "coefficient": 0.5}},
+    "material": {"mu_i_lc": MU_I_LC},
+    "body": [
+        {
+            "material": "mu_i_lc",
+            "shape": {"kind": "rectangle", "lower": [1.45, 0.0], "upper": [1.75, 0.8]},
+            "density": 1500.0,
+            "initial_stress": {"kind": "geostatic"},
+        }
+    ],
+    "output": {"interval": 0.05, "pictures": False},
+}
+
+
+def changed(content, changes):
+    """A copy of nested dictionaries with values by dotted key; the value None removes the key."""
+    content = copy.deepcopy(content)
+    for key, value in changes.items():
+        *parents, last = key.split(".")
+        table = content
+        for name in parents:
+            table = table[int(name)] if isinstance(table, list) else table.setdefault(name, {})
+        if value is None:
+            del table[last]
+        else:
+            table[last] = value
+    return content
+
+
+def simulation(content, changes=None, threads=1):
+    """The simulation of a scene given as dictionaries, with changes by dotted key."""
+    return Simulation(Scene.from_dict(changed(content, changes or {})), threads)
+
+
+def write_scene(path, content, changes=None):
+    """Write a scene as TOML; return its path."""
+    path.write_text(tomli_w.dumps(changed(content, changes or {})))
+    return path
+
+
+def set_affine_velocity(body, velocity, gradient):
+    """Give all points the velocity v + L x and the gradient L."""
+    (vx, vy), gradient = velocity, np.asarray(gradient)
+    body.points[[VX, VY]] = np.array([[vx], [vy]]) + gradient @ body.points[[X, Y]]
+    body.points[LXX : LYY + 1] = gradient.reshape(4, 1)
+
+
+def node_mass_and_momentum(simulation):
+    """Mass [kg/m] of each node and momentum [kg/s] that the points brought, shapes (nx, ny) and (2, nx, ny)."""
+    nodes = simulation.grid.nodes.reshape(*simulation.grid.shape, COMPONENTS)
+    mass = nodes[..., MASS]
+    return mass, np.where(mass > 0.0, mass * np.stack([nodes[..., OLD_VX], nodes[..., OLD_VY]]), 0.0)
+
+
+def momentum(simulation):
+    """Momentum of all points [kg/s], shape (2,)."""
+    return sum(body.point_mass * body.velocities.sum(axis=1) for body in simulation.bodies)
+
+
+def call_command_line(monkeypatch, *arguments):
+    """Run the command `grainlaw` in this process; return its exit code."""
+    from grainlaw.cli import main
+
+    monkeypatch.setattr(sys, "argv", ["grainlaw", *map(str, arguments)])
+    with pytest.raises(SystemExit) as exit_:
+        main()
+    return exit_.value.code or 0

@@ -1,0 +1,93 @@
+"""Mixed control: stages of strain rates and stress rates from a TOML file."""
+
+import numpy as np
+import pytest
+
+from materials import InputError, SimulationError
+from materials.element.catalogue import get_element_test
+from materials.element.mixed import mixed_test, read_control
+from materials.element.run import run_element_test
+from materials.element.specimen import prepared
+
+DRAINED = """
+time_step = 0.05
+[[stage]]
+duration = 5.0
+strain_rate = { yy = -0.01 }
+stress_rate = { xx = 0.0, zz = 0.0 }
+"""
+
+
+def written(folder, text):
+    path = folder / "control.toml"
+    path.write_text(text)
+    return read_control(path)
+
+
+def run_mixed(control, law, parameter_set=None, **assignments):
+    test = mixed_test(control)
+    return run_element_test(test, *prepared(law, parameter_set, assignments, test))
+
+
+@pytest.mark.parametrize("parameter_set", ["paper", "paper_ocr4"])
+def test_two_held_components_make_the_drained_triaxial_test(tmp_path, parameter_set):
+    mixed = run_mixed(written(tmp_path, DRAINED), "modified_cam_clay", parameter_set, initial_pressure=200e3)
+    test = get_element_test("triaxial-drained")
+    settings = {"initial_pressure": 200e3, "final_strain": 0.05, "strain_rate": 0.01, "time_step": 0.05}
+    single = run_element_test(test, *prepared("modified_cam_clay", parameter_set, settings, test))
+    assert np.allclose(mixed.stress, single.stress, rtol=1e-6, atol=1e-2)
+    assert np.allclose(mixed.strain, single.strain, rtol=1e-6, atol=1e-9)
+
+
+def test_stress_rates_are_followed_and_stages_start_where_the_last_one_ended(tmp_path):
+    control = written(
+        tmp_path,
+        """
+        time_step = 0.01
+        [[stage]]
+        duration = 1.0
+        stress_rate = { xx = -50.0, yy = -100.0, zz = 20.0, xy = 10.0 }
+        [[stage]]
+        duration = 0.5
+        strain_rate = { xy = 0.02 }
+        stress_rate = { xx = 0.0, yy = 40.0, zz = 0.0 }
+        """,
+    )
+    result = run_mixed(control, "linear_elastic", initial_pressure=500.0)
+    shear_stress = 10.0 + 2.0 * 1000.0 / 2.6 * 0.02 * 0.5
+    assert result.stress[100, :4] == pytest.approx([-550.0, -600.0, -480.0, 10.0], abs=1e-4)
+    assert result.stress[-1] == pytest.approx([-550.0, -580.0, -480.0, shear_stress, 0.0, 0.0], abs=1e-4)
+    assert result.time[-1] == pytest.approx(1.5)
+
+
+def test_stress_beyond_yield_stops_with_component_and_time(tmp_path):
+    control = written(
+        tmp_path, "time_step = 0.01\n[[stage]]\nduration = 10.0\nstress_rate = { xx = 0.0, yy = -500e3, zz = 0.0 }\n"
+    )
+    with pytest.raises(
+        SimulationError, match=r"modified_cam_clay: stress xx, yy, zz cannot follow its control in step \d+ \(t = "
+    ):
+        run_mixed(control, "modified_cam_clay", "paper_ocr4", initial_pressure=100e3)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("time_step = ", "cannot be read"),
+        ("time_step = 0.1\nstage = []", "stage: "),
+        ("time_step = -0.1\n[[stage]]\nduration = 1.0", "time_step: Input should be greater than 0"),
+        ("time_step = 0.1\n[[stage]]\nduraton = 1.0", "did you mean 'duration'"),
+        ("time_stp = 0.1\n[[stage]]\nduration = 1.0", "time_step"),
+        ("time_step = 0.1\n[[stage]]\nduration = 1.0\nstrain_rate = { yx = 1.0 }", "'xx', 'yy', 'zz', 'xy', 'yz'"),
+        (
+            "time_step = 0.1\n[[stage]]\nduration = 1.0\nstrain_rate = { xx = 1.0 }\nstress_rate = { xx = 0.0 }",
+            "xx has both a strain rate and a stress rate",
+        ),
+    ],
+)
+def test_faulty_control_is_refused_in_one_line(tmp_path, text, message):
+    with pytest.raises(InputError) as error:
+        written(tmp_path, text)
+    assert message in str(error.value)
+    assert "control.toml" in str(error.value)
+    assert "\n" not in str(error.value)
