@@ -37,6 +37,8 @@ class PointwiseLaw:
     """A law's functions, callable from compiled code, and the hash of all the sources behind them."""
 
     name: str
+    parameters: type[Any]
+    state: type[Any]
     initial_state: Callable[..., Any]
     update: Callable[..., Any]
     sound_speed: Callable[..., Any]
@@ -44,13 +46,14 @@ class PointwiseLaw:
 
 
 @cache
-def _pointwise_law(name: str, *functions: Callable[..., Any]) -> PointwiseLaw:
+def _pointwise_law(name: str, parameters: type[Any], state: type[Any], *functions: Callable[..., Any]) -> PointwiseLaw:
     _register_helpers()
     digest = hashlib.sha256()
     for path in sorted(_source_files(functions)):
         digest.update(path.read_bytes())
     initial_state, update, sound_speed = (_register_marked(function) for function in functions)
-    return PointwiseLaw(name, initial_state, update, sound_speed, int.from_bytes(digest.digest()[:7], "big"))
+    source_hash = int.from_bytes(digest.digest()[:7], "big")
+    return PointwiseLaw(name, parameters, state, initial_state, update, sound_speed, source_hash)
 
 
 def _source_files(functions: Iterable[Callable[..., Any]]) -> set[Path]:
@@ -78,7 +81,7 @@ def registered(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def pointwise_law(law: Law) -> PointwiseLaw:
     """The functions of a law, registered with the compiler."""
-    return _pointwise_law(law.name, law.initial_state, law.update, law.sound_speed)
+    return _pointwise_law(law.name, law.parameters, law.state, law.initial_state, law.update, law.sound_speed)
 
 
 def explained(law: Law, kernel: Callable[..., Any], *arguments: Any) -> Any:
@@ -86,8 +89,14 @@ def explained(law: Law, kernel: Callable[..., Any], *arguments: Any) -> Any:
     try:
         return kernel(*arguments)
     except NumbaError as error:
-        reason = next((line.strip() for line in str(error).splitlines() if line.strip()), "unknown reason")
+        reason = _reason(error)
         raise InputError(f"law '{law.name}' ({law.source_file.name}) does not compile: {reason}") from error
+
+
+def _reason(error: NumbaError) -> str:
+    """The first line of a compilation error that says more than in which of the compiler's stages it arose."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    return next((line for line in lines if not line.startswith("Failed in")), "unknown reason")
 
 
 def make_single_step(law: PointwiseLaw) -> Any:

@@ -31,10 +31,10 @@ class Basis:
     name: str
     width: int
     offset: float
-    weights: Callable[[float], tuple[float, ...]]
+    weights: Callable[..., tuple[float, ...]]
     moment: Callable[[float], float]
-    lower_wall: Callable[[tuple[float, ...]], tuple[float, ...]]
-    upper_wall: Callable[[tuple[float, ...]], tuple[float, ...]]
+    lower_wall: Callable[..., tuple[float, ...]]
+    upper_wall: Callable[..., tuple[float, ...]]
 
 
 @register_jitable

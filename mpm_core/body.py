@@ -61,9 +61,9 @@ class Body:
         """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""
         self._points_to_grid = make_points_to_grid(basis)
         self._grid_to_points = make_grid_to_points(basis)
-        self._stress_pass = make_stress_pass(pointwise_law(self.law), self.law.state, keeps_shear_strain)
+        self._stress_pass = make_stress_pass(pointwise_law(self.law), keeps_shear_strain)
         nothing = allocate(self.points.shape[0], 8)[:, :0]
-        explained(self.law, self._stress_pass, nothing, 1.0, self.parameters, 0.0, self.stress_reports[:0])
+        explained(self.law, self._stress_pass, nothing, 1.0, tuple(self.parameters), 0.0, self.stress_reports[:0])
 
     @property
     def velocities(self) -> NDArray[np.float64]:
@@ -134,7 +134,7 @@ class Body:
 
     def update_stress(self, dt: float) -> None:
         """Rotate the stress, bring the density forward, call the law."""
-        self._stress_pass(self.points, self.point_mass, self.parameters, dt, self.stress_reports)
+        self._stress_pass(self.points, self.point_mass, tuple(self.parameters), dt, self.stress_reports)
 
     def state(self, name: str) -> NDArray[np.float64]:
         """A state variable of all points, in their present order. Raises InputError for an unknown name."""

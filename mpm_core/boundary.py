@@ -1,7 +1,7 @@
 """Walls on the sides of the domain, and periodic sides.
 
-A wall lies on a line of nodes. The shape functions interpolate there (see `basis`), so that the velocity of the wall row
-is the velocity of the material at the wall, and all that a wall does is done to that row.
+A wall lies on a line of nodes. The shape functions interpolate there (see `basis`), so that the velocity of the wall
+row is the velocity of the material at the wall, and all that a wall does is done to that row.
 """
 
 from dataclasses import dataclass

@@ -47,7 +47,7 @@ class Rectangle(Shape):
     def contains(self, points: Points) -> NDArray[np.bool_]:
         """Inside or on the lower and left edges."""
         inside = (points >= np.array(self.lower)) & (points < np.array(self.upper))
-        return inside.all(axis=1)
+        return np.asarray(inside.all(axis=1))
 
 
 class Disc(Shape):
@@ -121,7 +121,7 @@ class MeshRegion(Shape):
         from matplotlib.tri import Triangulation
 
         finder = Triangulation(self._nodes[:, 0], self._nodes[:, 1], self._triangles).get_trifinder()
-        return np.asarray(finder(points[:, 0], points[:, 1]) >= 0)
+        return np.asarray(finder(points[:, 0], points[:, 1])) >= 0
 
 
 AnyShape = Annotated[Rectangle | Disc | Polygon | MeshRegion, Field(discriminator="kind")]

@@ -40,10 +40,10 @@ REPORTS = 3
 def replaced(values, k, value):  # type: ignore[no-untyped-def]
     """A copy of a tuple with one item replaced.
 
-    A function of this module rather than a call in `load`: the disk cache is keyed on what a kernel closes over, and the
-    compiler's intrinsic itself is another object in every process.
+    A function of this module rather than a call in `load`: the disk cache is keyed on what a kernel closes over, and
+    the compiler's intrinsic itself is another object in every process.
     """
-    return tuple_setitem(values, k, value)
+    return tuple_setitem(values, k, value)  # type: ignore[call-arg]
 
 
 def make_state_access(state_class: type[Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
@@ -99,19 +99,21 @@ def ordered_bits(value):  # type: ignore[no-untyped-def]
     return np.float64(value).view(np.int64)
 
 
-def make_stress_pass(law: PointwiseLaw, state_class: type[Any], keeps_shear_strain: bool) -> Callable[..., Any]:
-    """The stress pass of a law.
+def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..., Any]:
+    """The stress pass of a law; it takes the law's parameters as a plain tuple.
 
     Reports per block of points: the largest signal speed c + |v| [m/s], the work of the stress on the strain [J/m], and
     the largest volumetric strain increment of the step. Where anything is not finite, the last one is NaN.
     """
     update, sound_speed, source_hash = law.update, law.sound_speed, law.source_hash
-    load, store = make_state_access(state_class)
+    parameter_class = law.parameters
+    load, store = make_state_access(law.state)
 
     @register_jitable
     def update_block(  # type: ignore[no-untyped-def]
         vx, vy, lxx, lxy, lyx, lyy, sxx, syy, szz, sxy, density, shear_strain, states, parameters, dt
     ):
+        law_parameters = parameter_class(*parameters)
         work = 0.0
         fastest, largest = np.int64(0), np.int64(0)
         for p in range(len(vx)):
@@ -120,14 +122,16 @@ def make_stress_pass(law: PointwiseLaw, state_class: type[Any], keeps_shear_stra
             half_increment = 0.5 * dt * (lxx[p] + lyy[p])
             new_density = density[p] * (1.0 - half_increment) / (1.0 + half_increment)
             old_stress = SymmetricTensor(xx, yy, szz[p], xy, 0.0, 0.0)
-            stress, state = update(old_stress, strain_rate, new_density, load(states, p), parameters, dt)
+            stress, state = update(old_stress, strain_rate, new_density, load(states, p), law_parameters, dt)
             store(states, p, state)
             work += contraction(added(old_stress, stress), strain_rate) / (density[p] + new_density)
             sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
             density[p] = new_density
             if keeps_shear_strain:
                 shear_strain[p] += dt * shear_strain_rate(strain_rate)
-            signal_speed = sound_speed(stress, new_density, state, parameters) + np.sqrt(vx[p] * vx[p] + vy[p] * vy[p])
+            signal_speed = sound_speed(stress, new_density, state, law_parameters) + np.sqrt(
+                vx[p] * vx[p] + vy[p] * vy[p]
+            )
             fastest = max(fastest, ordered_bits(signal_speed))
             not_finite = 0.0 * (stress.xx + stress.yy + stress.zz + stress.xy + signal_speed)
             largest = max(largest, ordered_bits(abs(2.0 * half_increment + not_finite)))

@@ -7,11 +7,12 @@
 
 The printed Eq. 8 lacks the factor 1/3, without which it is not the gradient of F.
 
-Return mapping. Over a step, p and p_c follow their exponential laws exactly, and G is the mean of G(p) along them. With
-a = ln(2 p_trial/p_c) and B = 1/kappa + 1/(lambda - kappa), the critical state 2p = p_c is reached at the plastic volume
-strain a/B. The strain is therefore written as (1 - theta) a/B with theta in (0, 1]: theta = 1 is the elastic trial state,
-where F > 0, and theta -> 0 the critical state with q -> 0, where F < 0, on the dry side as on the wet one. The root is
-bracketed from the start and found by Newton's method in Lambda, with bisection in theta wherever that leaves the bracket.
+Return mapping. Over a step, p and p_c follow their exponential laws exactly, and G is the mean of G(p) along them.
+With a = ln(2 p_trial/p_c) and B = 1/kappa + 1/(lambda - kappa), the critical state 2p = p_c is reached at the plastic
+volume strain a/B. The strain is therefore written as (1 - theta) a/B with theta in (0, 1]: theta = 1 is the elastic
+trial state, where F > 0, and theta -> 0 the critical state with q -> 0, where F < 0, on the dry side as on the wet one.
+The root is bracketed from the start and found by Newton's method in Lambda, with bisection in theta wherever that
+leaves the bracket.
 
 Grains carry no tension. Where the pressure would fall below `stress_free_pressure` the point opens: its stress is zero
 and `gap` keeps the volumetric strain since, so that pressure returns only when the gap has closed.
@@ -161,7 +162,7 @@ def mean_over_path(growth: float, factor: float) -> float:
 
 @pointwise
 def log_derivative_of_mean(growth: float, factor: float) -> float:
-    """d ln(mean_over_path)/d(growth)."""
+    """Derivative of ln(mean_over_path) with respect to growth."""
     if abs(growth) < 1e-2:
         return -0.5 + growth / 12.0
     return 1.0 / (factor - 1.0) - 1.0 / growth

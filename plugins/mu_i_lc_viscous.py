@@ -7,8 +7,8 @@
 The printed Eq. 5 lacks d_p in the numerator and has d_p gamma_dot under the root; this form has the dimension of a
 viscosity and returns Eqs. 2 and 4 at alpha = 0.
 
-Near rest eta ~ mu_0 p/alpha, whose explicit step limit is far below the elastic one that `sound_speed` sets. The stress of
-slow points then chatters between the signs of the yield stress and a pile creeps for ever: this law is here to be
+Near rest eta ~ mu_0 p/alpha, whose explicit step limit is far below the elastic one that `sound_speed` sets. The stress
+of slow points then chatters between the signs of the yield stress and a pile creeps for ever: this law is here to be
 compared with, `mu_i_lc` is the one to use.
 
 Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", Eqs. 1-6, Table 1;
