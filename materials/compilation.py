@@ -45,17 +45,6 @@ class PointwiseLaw:
     source_hash: int
 
 
-@cache
-def _pointwise_law(name: str, parameters: type[Any], state: type[Any], *functions: Callable[..., Any]) -> PointwiseLaw:
-    _register_helpers()
-    digest = hashlib.sha256()
-    for path in sorted(_source_files(functions)):
-        digest.update(path.read_bytes())
-    initial_state, update, sound_speed = (_register_marked(function) for function in functions)
-    source_hash = int.from_bytes(digest.digest()[:7], "big")
-    return PointwiseLaw(name, parameters, state, initial_state, update, sound_speed, source_hash)
-
-
 def _source_files(functions: Iterable[Callable[..., Any]]) -> set[Path]:
     """The files of these functions and of every marked function that they call, directly or not."""
     marked = set(MARKED)
@@ -81,7 +70,21 @@ def registered(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def pointwise_law(law: Law) -> PointwiseLaw:
     """The functions of a law, registered with the compiler."""
-    return _pointwise_law(law.name, law.parameters, law.state, law.initial_state, law.update, law.sound_speed)
+    _register_helpers()
+    functions = (law.initial_state, law.update, law.sound_speed)
+    digest = hashlib.sha256()
+    for path in sorted(_source_files(functions)):
+        digest.update(path.read_bytes())
+    source_hash = int.from_bytes(digest.digest()[:7], "big")
+    return PointwiseLaw(
+        name=law.name,
+        parameters=law.parameters,
+        state=law.state,
+        initial_state=_register_marked(law.initial_state),
+        update=_register_marked(law.update),
+        sound_speed=_register_marked(law.sound_speed),
+        source_hash=source_hash,
+    )
 
 
 def explained(law: Law, kernel: Callable[..., Any], *arguments: Any) -> Any:
