@@ -32,6 +32,21 @@ def _register_helpers() -> None:
         _register_marked(function)
 
 
+def named(mark: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Give a generated function a name of its own.
+
+    The compiler links by name and argument types. Two functions that are generated from the same source and differ only
+    in what they close over would be taken for one another once both come from the disk cache.
+    """
+
+    def rename(function: Callable[..., Any]) -> Callable[..., Any]:
+        function.__name__ = f"{function.__name__}_{mark}"
+        function.__qualname__ = f"{function.__qualname__}_{mark}"
+        return function
+
+    return rename
+
+
 @dataclass(frozen=True)
 class PointwiseLaw:
     """A law's functions, callable from compiled code, and the hash of all the sources behind them."""
@@ -43,6 +58,11 @@ class PointwiseLaw:
     update: Callable[..., Any]
     sound_speed: Callable[..., Any]
     source_hash: int
+
+    @property
+    def mark(self) -> str:
+        """What tells functions generated for this law from those for another (see `named`)."""
+        return f"{self.name}_{self.source_hash:x}"
 
 
 def _source_files(functions: Iterable[Callable[..., Any]]) -> set[Path]:
@@ -107,6 +127,7 @@ def make_single_step(law: PointwiseLaw) -> Any:
     update, source_hash = law.update, law.source_hash
 
     @njit(cache=True)
+    @named(law.mark)
     def single_step(stress, strain_rate, density, state, parameters, dt):  # type: ignore[no-untyped-def]
         assert source_hash
         return update(stress, strain_rate, density, state, parameters, dt)

@@ -15,6 +15,8 @@ from dataclasses import dataclass
 
 from numba.extending import register_jitable
 
+from materials.compilation import named
+
 
 @dataclass(frozen=True)
 class Basis:
@@ -133,6 +135,7 @@ def make_stencil(basis: Basis) -> Callable[..., tuple[int, float, tuple[float, .
     at_lower_wall, at_upper_wall = basis.lower_wall, basis.upper_wall
 
     @register_jitable
+    @named(basis.name)
     def stencil(coordinate, lower_ghost, upper_ghost):  # type: ignore[no-untyped-def]
         first = int(coordinate - offset)
         f = coordinate - first

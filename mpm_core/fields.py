@@ -10,7 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from materials import InputError, SymmetricTensor
-from materials.compilation import registered
+from materials.compilation import named, registered
 from materials.errors import nearest_name
 from materials.law import Law
 from materials.tensor import deviatoric_stress, pressure
@@ -38,6 +38,7 @@ def _over_stress(function: Callable[[SymmetricTensor], float]) -> Callable[..., 
     invariant = registered(function)
 
     @njit(cache=True)
+    @named(function.__name__)
     def evaluate(points, values):  # type: ignore[no-untyped-def]
         for p in range(points.shape[1]):
             stress = SymmetricTensor(points[SXX, p], points[SYY, p], points[SZZ, p], points[SXY, p], 0.0, 0.0)

@@ -41,9 +41,11 @@ def _positions(scene: Scene, number: int, section: BodySection) -> NDArray[np.fl
 def _refuse_overlap(scene: Scene, positions: list[NDArray[np.float64]]) -> None:
     for second, section in enumerate(scene.body):
         for first in range(second):
-            inside = section.shape.contains(positions[first])
-            if inside.any():
-                x, y = positions[first][inside][0]
+            # Both ways: a small body may lie between the points of a large one.
+            in_second = positions[first][section.shape.contains(positions[first])]
+            in_first = positions[second][scene.body[first].shape.contains(positions[second])]
+            if len(in_second) or len(in_first):
+                x, y = (*in_second, *in_first)[0]
                 raise InputError(f"body.{first} and body.{second} overlap, for instance at ({x:g}, {y:g})")
 
 

@@ -1,10 +1,12 @@
 """What a scene will use and cost, before it is run."""
 
+import math
 import time
 from dataclasses import dataclass
 
 from mpm_core.grid import COMPONENTS
 from mpm_core.recorder import FRAMES_BY_DEFAULT
+from mpm_core.run import built_simulation
 from mpm_core.scene import Scene
 from mpm_core.simulation import Simulation
 
@@ -37,7 +39,7 @@ class Plan:
 
 def plan(scene: Scene, threads: int = 1) -> Plan:
     """Build the scene, rehearse a few steps and extrapolate. Raises InputError for a scene that cannot be run."""
-    simulation = Simulation(scene, threads)
+    simulation = built_simulation(scene, threads)
     stable = simulation.stable_step()
     step = scene.time.step or scene.time.safety * stable
     points = sum(body.count for body in simulation.bodies)
@@ -59,7 +61,7 @@ def plan(scene: Scene, threads: int = 1) -> Plan:
         steps=steps,
         seconds_per_step=seconds,
         wall_time=steps * seconds,
-        frames=int(scene.time.end / interval + 1e-9) + 1 if scene.output.vtu or scene.output.vtkhdf else 0,
+        frames=math.ceil(scene.time.end / interval - 1e-9) + 1 if scene.output.vtu or scene.output.vtkhdf else 0,
         fields=simulation.fields,
         threads=threads,
     )

@@ -49,7 +49,9 @@ class Recorder:
 
     def next_frame_time(self) -> float:
         """When the next frame is due [s]: at whole multiples of the interval and at the end."""
-        return min(self.clock.next_frame * self.frame_interval, self.simulation.scene.time.end)
+        due, end = self.clock.next_frame * self.frame_interval, self.simulation.scene.time.end
+        # A multiple that misses the end by rounding is the end.
+        return due if due < end * (1.0 - 1e-9) else end
 
     def shape(self) -> PileShape:
         """The present shape of the material."""
@@ -122,8 +124,11 @@ def prepare_folder(folder: Path, scene_text: str, *, resume: bool, overwrite: bo
         for pattern in OWN_FILES:
             for path in folder.glob(pattern):
                 path.unlink()
-    folder.mkdir(parents=True, exist_ok=True)
-    atomic.write_text(scene_file, scene_text)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        atomic.write_text(scene_file, scene_text)
+    except OSError as error:
+        raise InputError(f"output folder {folder} cannot be written: {error.strerror}") from error
 
 
 def rewind(folder: Path, simulation: Simulation) -> None:

@@ -32,7 +32,7 @@ def run(
     and the last checkpoint, where the computation goes wrong.
     """
     started = time.perf_counter()
-    simulation = Simulation(scene, threads)
+    simulation = built_simulation(scene, threads)
     _refuse_unstable_step(simulation)
     prepare_folder(folder, scene.to_toml(), resume=resume, overwrite=overwrite)
     clock = Clock()
@@ -55,6 +55,17 @@ def run(
 
         write_run_pictures(folder)
     return summary
+
+
+def built_simulation(scene: Scene, threads: int) -> Simulation:
+    """The simulation of a scene. Raises InputError, naming the scene's file, for a scene that cannot be built."""
+    try:
+        return Simulation(scene, threads)
+    except InputError as error:
+        raise InputError(f"{scene.source}: {error}") from error
+    except MemoryError as error:
+        across, up = scene.grid.cells
+        raise InputError(f"{scene.source}: grid: {across} x {up} cells do not fit into memory") from error
 
 
 def _advance(simulation: Simulation, recorder: Recorder, started: float, progress: Progress | None) -> float:
@@ -101,7 +112,8 @@ def next_step(simulation: Simulation, target: float) -> tuple[float, float | Non
 def _refuse_unstable_step(simulation: Simulation) -> None:
     step, stable = simulation.scene.time.step, simulation.stable_step()
     if step is not None and step > stable:
-        raise InputError(f"time.step = {step:g} s is above the stable step at the start, {stable:.6g} s")
+        where = f"{simulation.scene.source}: time.step = {step:g} s"
+        raise InputError(f"{where} is above the stable step at the start, {stable:.6g} s")
 
 
 def _summary(simulation: Simulation, recorder: Recorder, wall_time: float, compile_time: float) -> RunSummary:

@@ -1,17 +1,20 @@
 """The scene: everything that a run needs, as a validated model that reads and writes TOML."""
 
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tomli_w
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, field_validator, model_validator
 
 from materials import InputError, checked_parameters, get_material
 from materials.errors import nearest_name
 from materials.law import Law
 from mpm_core.scene_errors import described
+from mpm_core.scene_file import read_content
 from mpm_core.shapes import AnyShape, Corner
+
+# The widest stencil: over fewer cells it would reach the same node twice.
+FEWEST_PERIODIC_CELLS = 4
 
 
 class Section(BaseModel):
@@ -169,6 +172,22 @@ class Scene(Section):
     )
     body: Annotated[list[BodySection], Field(min_length=1)]
     output: OutputSection = Field(default=OutputSection())
+    _source: str = PrivateAttr(default="scene")
+
+    @property
+    def source(self) -> str:
+        """The file that the scene was read from, for messages."""
+        return self._source
+
+    @model_validator(mode="after")
+    def _periodic_axes_are_wide_enough(self) -> "Scene":
+        for cells, side in zip(self.grid.cells, ("left", "bottom"), strict=True):
+            if getattr(self.boundary, side).kind == "periodic" and cells < FEWEST_PERIODIC_CELLS:
+                raise ValueError(
+                    f"boundary.{side} is periodic over {cells} cells of the grid; "
+                    f"allowed: {FEWEST_PERIODIC_CELLS} or more"
+                )
+        return self
 
     @model_validator(mode="after")
     def _materials_exist(self) -> "Scene":
@@ -181,7 +200,10 @@ class Scene(Section):
 
     def law(self, material: str) -> Law:
         """The law of a [material.NAME] table. Raises InputError for an unknown one."""
-        return get_material(str(self.material[material].get("law", material)))
+        try:
+            return get_material(str(self.material[material].get("law", material)))
+        except InputError as error:
+            raise InputError(f"material.{material}: {error}") from error
 
     def parameters(self, material: str) -> Any:
         """The parameters of a [material.NAME] table as the law's NamedTuple. Raises InputError for bad values."""
@@ -195,6 +217,7 @@ class Scene(Section):
             scene = cls.model_validate(content)
         except ValidationError as error:
             raise InputError(f"{source}: {described(error, cls, content)}") from None
+        scene._source = source
         for material in scene.material:
             try:
                 scene.parameters(material)
@@ -205,37 +228,8 @@ class Scene(Section):
     @classmethod
     def load(cls, path: Path, overrides: dict[str, Any] | None = None) -> "Scene":
         """Read a TOML scene, with values by dotted key set on top. Raises InputError in one line."""
-        try:
-            content = tomllib.loads(path.read_text(encoding="utf-8"))
-        except OSError as error:
-            raise InputError(f"{path}: {error.strerror}") from None
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise InputError(f"{path}: not valid TOML: {error}") from None
-        for key, value in (overrides or {}).items():
-            _set_dotted(content, key, value)
-        for body in content.get("body", []):
-            _resolve_mesh_path(body, path.parent)
-        return cls.from_dict(content, str(path))
+        return cls.from_dict(read_content(path, overrides or {}), str(path))
 
     def to_toml(self) -> str:
         """The scene with every default written out."""
         return tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))
-
-
-def _set_dotted(content: dict[str, Any], key: str, value: Any) -> None:
-    *parents, last = key.split(".")
-    table: Any = content
-    for name in parents:
-        table = table[int(name)] if isinstance(table, list) and name.isdigit() else table.setdefault(name, {})
-        if not isinstance(table, dict | list):
-            raise InputError(f"--set {key}: '{name}' is a value, not a table")
-    if isinstance(table, list):
-        table[int(last)] = value
-    else:
-        table[last] = value
-
-
-def _resolve_mesh_path(body: Any, folder: Path) -> None:
-    shape = body.get("shape") if isinstance(body, dict) else None
-    if isinstance(shape, dict) and shape.get("kind") == "mesh" and "file" in shape:
-        shape["file"] = str(folder / str(shape["file"]))

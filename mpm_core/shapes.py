@@ -1,7 +1,9 @@
 """Shapes of bodies, as a scene declares them, and the regular lattice of points that fills one."""
 
+import contextlib
+import io
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +16,7 @@ Corner = tuple[float, float]
 class Shape(BaseModel):
     """A region of the plane."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     def bounds(self) -> tuple[Corner, Corner]:
         """Lower and upper corner of the bounding box [m]."""
@@ -90,38 +92,51 @@ class MeshRegion(Shape):
 
     kind: Literal["mesh"]
     file: Path = Field(description="mesh file; a relative path counts from the scene file")
-    _triangles: NDArray[np.int64] = PrivateAttr()
-    _nodes: Points = PrivateAttr()
+    _corners: Points = PrivateAttr()
+    _cell_finder: Any = PrivateAttr()
 
     @model_validator(mode="after")
     def _read(self) -> "MeshRegion":
-        import meshio
+        from matplotlib.tri import Triangulation
 
-        try:
-            mesh = meshio.read(self.file)
-        except (OSError, meshio.ReadError, SystemExit, ValueError, KeyError) as error:
-            raise ValueError(f"cannot read mesh file {self.file}: {error}") from error
+        mesh = _read_mesh(self.file)
         cells = mesh.cells_dict
         parts = [cells["triangle"]] if "triangle" in cells else []
         if "quad" in cells:
             parts += [cells["quad"][:, [0, 1, 2]], cells["quad"][:, [0, 2, 3]]]
         if not parts:
             raise ValueError(f"mesh file {self.file} holds no triangles or quadrilaterals")
-        self._triangles = np.concatenate(parts)
-        self._nodes = np.asarray(mesh.points[:, :2], dtype=float)
+        triangles = np.concatenate(parts)
+        nodes = np.asarray(mesh.points[:, :2], dtype=float)
+        self._corners = nodes[np.unique(triangles)]
+        try:
+            self._cell_finder = Triangulation(nodes[:, 0], nodes[:, 1], triangles).get_trifinder()
+        except (RuntimeError, ValueError) as error:
+            raise ValueError(f"the cells of mesh file {self.file} overlap or have no area") from error
         return self
 
     def bounds(self) -> tuple[Corner, Corner]:
         """The box around the nodes that the cells use."""
-        used = self._nodes[np.unique(self._triangles)]
-        return tuple(used.min(axis=0)), tuple(used.max(axis=0))
+        return tuple(self._corners.min(axis=0)), tuple(self._corners.max(axis=0))
 
     def contains(self, points: Points) -> NDArray[np.bool_]:
         """Inside any cell."""
-        from matplotlib.tri import Triangulation
+        return np.asarray(self._cell_finder(points[:, 0], points[:, 1])) >= 0
 
-        finder = Triangulation(self._nodes[:, 0], self._nodes[:, 1], self._triangles).get_trifinder()
-        return np.asarray(finder(points[:, 0], points[:, 1])) >= 0
+
+def _read_mesh(file: Path) -> Any:
+    """The mesh of a file. Raises ValueError in one line: meshio itself prints several and leaves the process."""
+    import meshio
+
+    if not file.is_file():
+        raise ValueError(f"there is no mesh file {file}")
+    try:
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            return meshio.read(file)
+    except meshio.ReadError as error:
+        raise ValueError(f"cannot read mesh file {file}: {error}") from error
+    except (Exception, SystemExit) as error:  # meshio raises whatever its parser meets
+        raise ValueError(f"cannot read mesh file {file}: it is no valid {file.suffix} file") from error
 
 
 AnyShape = Annotated[Rectangle | Disc | Polygon | MeshRegion, Field(discriminator="kind")]

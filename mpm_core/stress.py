@@ -12,7 +12,7 @@ from numba import njit, prange
 from numba.cpython.unsafe.tuple import tuple_setitem
 from numba.extending import register_jitable
 
-from materials.compilation import PointwiseLaw
+from materials.compilation import PointwiseLaw, named
 from materials.tensor import SymmetricTensor, added, contraction, shear_strain_rate
 from mpm_core.columns import (
     DENSITY,
@@ -46,7 +46,7 @@ def replaced(values, k, value):  # type: ignore[no-untyped-def]
     return tuple_setitem(values, k, value)  # type: ignore[call-arg]
 
 
-def make_state_access(state_class: type[Any]) -> tuple[Callable[..., Any], Callable[..., Any]]:
+def make_state_access(state_class: type[Any], mark: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """Functions that load a law's state of one point from its columns, and store it."""
     count = len(state_class._fields)
     zeros = (0.0,) * count
@@ -54,16 +54,19 @@ def make_state_access(state_class: type[Any]) -> tuple[Callable[..., Any], Calla
     if count == 0:
 
         @register_jitable
+        @named(mark)
         def load_nothing(columns, p):  # type: ignore[no-untyped-def]
             return state_class()
 
         @register_jitable
+        @named(mark)
         def store_nothing(columns, p, state):  # type: ignore[no-untyped-def]
             pass
 
         return load_nothing, store_nothing
 
     @register_jitable
+    @named(mark)
     def load(columns, p):  # type: ignore[no-untyped-def]
         values = zeros
         for k in range(count):
@@ -71,6 +74,7 @@ def make_state_access(state_class: type[Any]) -> tuple[Callable[..., Any], Calla
         return state_class(*values)
 
     @register_jitable
+    @named(mark)
     def store(columns, p, state):  # type: ignore[no-untyped-def]
         for k in range(count):
             columns[k, p] = state[k]
@@ -107,9 +111,11 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
     """
     update, sound_speed, source_hash = law.update, law.sound_speed, law.source_hash
     parameter_class = law.parameters
-    load, store = make_state_access(law.state)
+    mark = f"{law.mark}_{keeps_shear_strain:d}"
+    load, store = make_state_access(law.state, mark)
 
     @register_jitable
+    @named(mark)
     def update_block(  # type: ignore[no-untyped-def]
         vx, vy, lxx, lxy, lyx, lyy, sxx, syy, szz, sxy, density, shear_strain, states, parameters, dt
     ):
@@ -138,6 +144,7 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
         return fastest, work, largest
 
     @njit(parallel=True, fastmath=FAST, error_model="numpy", cache=True)
+    @named(mark)
     def stress_pass(points, point_mass, parameters, dt, reports):  # type: ignore[no-untyped-def]
         assert source_hash
         for block in prange(reports.shape[0]):

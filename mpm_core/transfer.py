@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numba import njit, prange
 
+from materials.compilation import named
 from mpm_core.basis import Basis, make_stencil
 from mpm_core.columns import DENSITY, LXX, LXY, LYX, LYY, SXX, SXY, SYY, VX, VY, X, Y
 from mpm_core.grid import COMPONENTS, FX, FY, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, PX, PY
@@ -40,6 +41,7 @@ def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
     width, stencil = basis.width, make_stencil(basis)
 
     @njit(parallel=True, fastmath=FAST, error_model="numpy", cache=True)
+    @named(basis.name)
     def points_to_grid(  # type: ignore[no-untyped-def]
         points, point_mass, stripe_starts, chunks, parity, nodes, nodes_y, ghosts, origin_x, origin_y, cell_size
     ):
@@ -89,6 +91,7 @@ def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
     width, stencil = basis.width, make_stencil(basis)
 
     @njit(parallel=True, fastmath=FAST, error_model="numpy", cache=True)
+    @named(basis.name)
     def grid_to_points(  # type: ignore[no-untyped-def]
         points, point_mass, nodes, nodes_y, ghosts, origin_x, origin_y, cell_size, dt, memory, reports
     ):

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
-from materials.compilation import PointwiseLaw, explained, pointwise_law
+from materials.compilation import PointwiseLaw, explained, named, pointwise_law
 from materials.element import search as search_module
 from materials.element.path import LoadingPath
 from materials.element.point import Point
@@ -45,6 +45,7 @@ def make_advance(law: PointwiseLaw) -> Any:
     search_hash = int.from_bytes(hashlib.sha256(Path(search_module.__file__).read_bytes()).digest()[:7], "big")
 
     @njit(cache=True)
+    @named(law.mark)
     def advance(point, parameters, dt, rates, direction, free, held, target):  # type: ignore[no-untyped-def]
         assert source_hash
         assert search_hash

@@ -1,0 +1,42 @@
+# make demo    set up, run the paper's column collapse with three materials on a coarse grid, compare them
+# make test    set up, run the tests
+# make lint    set up, check style and types
+# make docs    set up, write the generated parts of docs/ from the declarations
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALLED := $(VENV)/.installed
+
+DEMO := runs/demo
+MATERIALS := mu_i_lc mcc_ocr1 mcc_ocr4
+
+.PHONY: demo test lint docs
+
+$(INSTALLED): pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and \
+		"grainlaw needs Python 3.11 or newer, for instance: make PYTHON=python3.12")'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet -c constraints.txt -e '.[dev]'
+	@touch $@
+
+demo: $(INSTALLED)
+	@for material in $(MATERIALS); do \
+		$(BIN)/grainlaw run scenes/collapse_$$material.toml --set grid.cell_size=0.0125 \
+			--out $(DEMO)/$$material --overwrite || exit 1; \
+	done
+	@$(BIN)/grainlaw compare $(MATERIALS:%=$(DEMO)/%) --out $(DEMO)/comparison
+	@echo "pictures:  $(DEMO)/comparison/*.png, $(DEMO)/*/*.png"
+	@echo "ParaView:  $(MATERIALS:%=$(DEMO)/%/run.pvd)"
+	@echo "summaries: $(MATERIALS:%=$(DEMO)/%/summary.json)"
+
+test: $(INSTALLED)
+	$(BIN)/python -m pytest
+
+lint: $(INSTALLED)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+docs: $(INSTALLED)
+	$(BIN)/python -m grainlaw.reference docs

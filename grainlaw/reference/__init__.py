@@ -1,0 +1,1 @@
+"""The reference parts of docs/, written from the declarations of scenes, laws, output and command line."""

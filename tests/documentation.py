@@ -1,0 +1,46 @@
+"""The pages of docs/ as scripts: what a reader would type and save, in the order of the page."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
+_BLOCK = re.compile(r"^```(?P<language>\w+) (?P<use>runnable|file=(?P<name>\S+))\n(?P<body>.*?)^```$", re.M | re.S)
+
+
+def page_script(page: Path) -> str:
+    """The runnable blocks of a page, and the files that it shows, as one shell script."""
+    return "set -e\n" + "".join(_as_shell(block) for block in _BLOCK.finditer(page.read_text(encoding="utf-8")))
+
+
+def _as_shell(block: re.Match[str]) -> str:
+    body = block["body"]
+    if block["name"]:
+        return f"cat > {block['name']} <<'END_OF_FILE'\n{body}END_OF_FILE\n"
+    if block["language"] == "python":
+        return f"python - <<'END_OF_FILE'\n{body}END_OF_FILE\n"
+    return body
+
+
+def run_page(page: Path, clone: Path, binaries: Path = Path(sys.executable).parent) -> str:
+    """Run a page in a folder that looks like the top of a clone, with a virtual environment's commands.
+
+    Returns what the commands printed; fails with it if one of them fails.
+    """
+    clone.mkdir()
+    for name in ("scenes", "plugins"):
+        (clone / name).symlink_to(ROOT / name)
+    environment = {
+        **os.environ,
+        "PATH": f"{binaries}{os.pathsep}{os.environ['PATH']}",
+        # Stands for --no-build-isolation: pip builds with the setuptools at hand instead of downloading one.
+        "PIP_NO_BUILD_ISOLATION": "0",
+    }
+    done = subprocess.run(
+        ["bash", "-c", page_script(page)], cwd=clone, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, f"{page.name}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}"
+    return done.stdout

@@ -1,0 +1,108 @@
+"""The transfers: what they conserve, what they reproduce exactly, and that neither threads nor steps leave a trace."""
+
+import tracemalloc
+
+import numba
+import numpy as np
+import pytest
+from scenes_for_tests import BLOCK, COLUMN, momentum, node_mass_and_momentum, set_affine_velocity, simulation
+
+from mpm_core.basis import BASES
+from mpm_core.columns import LXX, LXY, LYX, LYY, SXX, SXY, VX, VY, X, Y
+
+BASIS_NAMES = list(BASES)
+# A hair above no step at all: the transfers happen, the stress and the positions stay.
+INSTANT = 1e-12
+GRADIENT = [[0.3, -0.7], [1.1, -0.3]]
+FILLING = {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [1.0, 0.8]}
+
+
+def block(basis="quadratic", **changes):
+    return simulation(BLOCK, {"transfer.basis": basis, **changes})
+
+
+@pytest.mark.parametrize("shape", [BLOCK["body"][0]["shape"], FILLING], ids=["free", "at walls"])
+@pytest.mark.parametrize("basis", BASIS_NAMES)
+def test_mass_and_momentum_reach_the_grid_whole(basis, shape):
+    case = block(basis, **{"body.0.shape": shape})
+    (body,) = case.bodies
+    body.points[LXX : LYY + 1] = np.random.default_rng(1).normal(size=(4, body.count))
+    body.points[[VX, VY]] = np.random.default_rng(2).normal(size=(2, body.count))
+    brought = momentum(case)
+    case.step(INSTANT)
+    mass, received = node_mass_and_momentum(case)
+    assert mass.sum() == pytest.approx(body.count * body.point_mass, rel=1e-12)
+    np.testing.assert_allclose(received.sum(axis=(1, 2)), brought, rtol=1e-12, atol=1e-12 * body.point_mass * body.count)
+
+
+@pytest.mark.parametrize("scheme", ["apic", "affine_flip"])
+@pytest.mark.parametrize("basis", BASIS_NAMES)
+def test_an_affine_velocity_field_survives_the_way_to_the_grid_and_back(basis, scheme):
+    # Walls would hold the field; the points are near them, but the walls are taken away after the scene is built.
+    case = block(basis, **{"transfer.scheme": scheme, "body.0.shape": FILLING})
+    case.walls.clear()
+    (body,) = case.bodies
+    set_affine_velocity(body, (0.4, -0.2), GRADIENT)
+    before = body.points[VX : LYY + 1].copy()
+    ids = body.ids.copy()
+    case.step(INSTANT)
+    order = np.argsort(ids)[body.ids]
+    np.testing.assert_allclose(body.points[VX : LYY + 1], before[:, order], atol=1e-9)
+
+
+@pytest.mark.parametrize("basis", ["quadratic", "cubic"])
+def test_a_spinning_stressed_disc_keeps_momentum_and_angular_momentum(basis):
+    disc = {"kind": "disc", "center": [0.5, 0.4], "radius": 0.2}
+    case = block(basis, **{"body.0.shape": disc, "transfer.scheme": "apic"})
+    (body,) = case.bodies
+    # Drift (0.1, -0.05) and 3 rad/s about the centre of the disc.
+    set_affine_velocity(body, (0.1 + 3.0 * 0.4, -0.05 - 3.0 * 0.5), [[0.0, -3.0], [3.0, 0.0]])
+    body.points[SXX : SXY + 1] = np.random.default_rng(3).normal(size=(4, body.count)) * 50.0
+    # The affine field of a point carries angular momentum of its own: second moment times vorticity.
+    moment = {"quadratic": 1 / 4, "cubic": 1 / 3}[basis] * case.grid.cell_size**2
+
+    def angular_momentum():
+        x, y, vx, vy = body.points[[X, Y, VX, VY]]
+        own = moment * (body.points[LYX] - body.points[LXY])
+        return body.point_mass * float(np.sum(x * vy - y * vx + own))
+
+    linear, angular = momentum(case), angular_momentum()
+    for _ in range(200):
+        case.step(1e-3)
+    np.testing.assert_allclose(momentum(case), linear, rtol=1e-11)
+    assert angular_momentum() == pytest.approx(angular, rel=1e-11)
+    assert abs(case.ledger.internal_work) > 0.0
+
+
+def final_state(threads):
+    case = simulation(COLUMN, {"grid.cell_size": 0.0125, "body.0.velocity": [0.8, 0.0]}, threads)
+    start = case.bodies[0].corners()
+    for _ in range(400):
+        case.step(0.5 * case.stable_step())
+    return case, start
+
+
+@pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one core")
+def test_two_threads_give_the_bits_of_one():
+    one, start = final_state(1)
+    two, _ = final_state(2)
+    (first,), (second,) = one.bodies, two.bodies
+    (left, _), (right, _) = first.corners()
+    assert (right - left) > 2.0 * (start[1][0] - start[0][0])
+    assert len(first.stripe_starts) > 6
+    assert first.points.tobytes() == second.points.tobytes()
+    assert first.ids.tobytes() == second.ids.tobytes()
+    assert one.ledger == two.ledger
+
+
+def test_a_step_allocates_nothing_in_proportion_to_the_points():
+    case = simulation(COLUMN, {"body.0.points_per_cell": 16})
+    (body,) = case.bodies
+    for _ in range(3):
+        case.step(1e-7)
+    tracemalloc.start()
+    for _ in range(5):
+        case.step(1e-7)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < body.points[X].nbytes

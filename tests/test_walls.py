@@ -1,0 +1,161 @@
+"""What the sides of the domain do: free fall until contact, Coulomb friction, no-slip, free-slip, periodic."""
+
+import math
+
+import numpy as np
+import pytest
+from scenes_for_tests import BLOCK, COLUMN, momentum, simulation
+
+from mpm_core.columns import SXX, SYY, VX, VY, X, Y
+from mpm_core.scene import FEWEST_PERIODIC_CELLS
+
+G = 9.81
+
+
+def advance(case, end):
+    while case.time < end:
+        case.step(min(0.4 * case.stable_step(), end - case.time))
+
+
+def test_free_fall_is_exact():
+    dt, steps = 2e-3, 60
+    case = simulation(BLOCK, {"gravity": [0.0, -G]})
+    (body,) = case.bodies
+    start = body.points[Y][np.argsort(body.ids)]
+    for _ in range(steps):
+        case.step(dt)
+    fallen = start - body.points[Y][np.argsort(body.ids)]
+    time = steps * dt
+    # The velocity is moved first, then the position: g t (t + dt)/2 to rounding, g t^2/2 to first order.
+    np.testing.assert_allclose(fallen, 0.5 * G * time * (time + dt), rtol=1e-10)
+    np.testing.assert_allclose(body.points[VY], -G * time, rtol=1e-10)
+    np.testing.assert_allclose(body.points[[SXX, SYY]], 0.0, atol=1e-6)
+    assert case.ledger.numerical_dissipation == pytest.approx(0.0, abs=1e-9 + 0.5 * G * dt / time * case.ledger.kinetic)
+
+
+def block_on_a_plane(angle, friction):
+    """A flat stiff block on a plane of this angle, at rest and without shear stress at the start."""
+    angle = math.radians(angle)
+    changes = {
+        "gravity": [G * math.sin(angle), -G * math.cos(angle)],
+        "grid": {"cell_size": 0.05, "upper": [1.2, 0.4]},
+        "boundary.bottom": {"kind": "friction", "coefficient": friction},
+        "material.linear_elastic.bulk_modulus": 1e6,
+        "body.0.shape": {"kind": "rectangle", "lower": [0.2, 0.0], "upper": [0.6, 0.1]},
+        "body.0.initial_stress": {"kind": "geostatic", "horizontal_ratio": 0.0, "out_of_plane_ratio": 0.2},
+    }
+    return simulation(BLOCK, changes)
+
+
+def test_a_block_below_the_friction_angle_sticks():
+    case = block_on_a_plane(angle=20.0, friction=0.45)
+    x = case.bodies[0].points[X]
+    start = x.mean()
+    advance(case, 0.2)
+    stuck = x.mean()
+    advance(case, 0.5)
+    assert abs(stuck - start) < 2e-4
+    assert abs(x.mean() - stuck) < 1e-6
+
+
+@pytest.mark.parametrize(("angle", "friction"), [(30.0, 0.3), (30.0, 0.0), (40.0, 0.6)])
+def test_a_block_above_the_friction_angle_slides_at_the_rate_of_coulomb(angle, friction):
+    case = block_on_a_plane(angle, friction)
+    start = case.bodies[0].points[X].mean()
+    advance(case, 0.3)
+    steep = math.radians(angle)
+    expected = 0.5 * G * (math.sin(steep) - friction * math.cos(steep)) * 0.3**2
+    assert case.bodies[0].points[X].mean() - start == pytest.approx(expected, rel=0.02)
+
+
+def test_friction_brings_a_thrown_block_to_rest_after_the_distance_of_coulomb():
+    case = block_on_a_plane(angle=0.0, friction=0.5)
+    (body,) = case.bodies
+    body.points[VX] = 1.0
+    start = body.points[X].mean()
+    advance(case, 0.5)
+    assert np.abs(body.points[VX]).max() < 1e-3
+    assert body.points[X].mean() - start == pytest.approx(1.0 / (2.0 * 0.5 * G), rel=0.03)
+    # All of the block's kinetic energy went into the floor, but for what the transfer took.
+    assert case.ledger.wall_work == pytest.approx(0.5 * body.count * body.point_mass, rel=0.1)
+
+
+def test_material_may_leave_a_friction_wall_but_not_the_others():
+    at_floor = {"kind": "rectangle", "lower": [0.3, 0.0], "upper": [0.7, 0.4]}
+    rises = {}
+    for kind in ("friction", "free_slip"):
+        wall = {"kind": kind, "coefficient": 0.5} if kind == "friction" else {"kind": kind}
+        case = simulation(BLOCK, {"body.0.shape": at_floor, "body.0.velocity": [0.0, 0.5], "boundary.bottom": wall})
+        advance(case, 0.1)
+        rises[kind] = case.bodies[0].points[Y].min()
+    assert rises["friction"] == pytest.approx(0.025 + 0.05, rel=1e-6)
+    assert rises["free_slip"] < 0.05
+
+
+def test_a_free_slip_wall_keeps_tangential_momentum_and_a_no_slip_wall_takes_it():
+    at_floor = {"kind": "rectangle", "lower": [0.2, 0.0], "upper": [0.4, 0.2]}
+    kept = {}
+    for kind in ("free_slip", "no_slip"):
+        changes = {"body.0.shape": at_floor, "body.0.velocity": [0.5, -0.2], "boundary.bottom": kind}
+        case = simulation(BLOCK, changes)
+        before = momentum(case)
+        advance(case, 0.05)
+        kept[kind] = momentum(case)[0] / before[0]
+        lowest = case.bodies[0].points[Y] < 0.5 * case.grid.cell_size
+        if kind == "no_slip":
+            assert np.abs(case.bodies[0].points[VX][lowest]).mean() < 0.2
+    assert kept["free_slip"] == pytest.approx(1.0, rel=1e-12)
+    assert kept["no_slip"] < 0.7
+
+
+def test_uniform_motion_around_a_periodic_box_comes_back_to_the_same_state():
+    sides = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
+    disc = {"kind": "disc", "center": [0.5, 0.4], "radius": 0.25}
+    case = simulation(BLOCK, {"boundary": sides, "body.0.shape": disc, "body.0.velocity": [1.0, 0.8]})
+    (body,) = case.bodies
+    start = body.points[[X, Y]][:, np.argsort(body.ids)]
+    before = momentum(case)
+    for _ in range(500):
+        case.step(2e-3)
+    np.testing.assert_allclose(momentum(case), before, rtol=1e-12)
+    end = body.points[[X, Y]][:, np.argsort(body.ids)]
+    size = np.array([[1.0], [0.8]])
+    away = np.mod(end - start + 0.5 * size, size) - 0.5 * size
+    np.testing.assert_allclose(away, 0.0, atol=1e-11)
+    np.testing.assert_allclose(body.points[[SXX, SYY]], 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("basis", ["linear", "quadratic", "cubic"])
+def test_momentum_is_exact_across_the_narrowest_periodic_box(basis):
+    cells = FEWEST_PERIODIC_CELLS
+    changes = {
+        "transfer.basis": basis,
+        "grid.upper": [cells * 0.1, 0.8],
+        "boundary": {"left": "periodic", "right": "periodic"},
+        "body.0.shape": {"kind": "rectangle", "lower": [0.0, 0.2], "upper": [cells * 0.1, 0.6]},
+    }
+    case = simulation(BLOCK, changes)
+    (body,) = case.bodies
+    body.points[VX] = 1.0 + 0.1 * np.random.default_rng(4).normal(size=body.count)
+    before = momentum(case)
+    for _ in range(50):
+        case.step(1e-3)
+    np.testing.assert_allclose(momentum(case), before, rtol=1e-12, atol=1e-10)
+
+
+@pytest.mark.parametrize(("basis", "tolerance"), [("quadratic", 0.005), ("cubic", 0.02)])
+def test_a_column_between_smooth_walls_keeps_its_geostatic_stress(basis, tolerance):
+    changes = {
+        "transfer.basis": basis,
+        "grid": {"cell_size": 0.05, "upper": [0.2, 1.0]},
+        "boundary.bottom": {"kind": "friction", "coefficient": 0.5},
+        "body.0.shape": {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [0.2, 0.8]},
+        "material.mu_i_lc.bulk_modulus": 2e5,
+    }
+    case = simulation(COLUMN, changes)
+    (body,) = case.bodies
+    advance(case, 0.5)
+    largest = 1500.0 * 9.8 * 0.8
+    depth = 0.8 - body.points[Y]
+    assert np.abs(body.points[VY]).max() < 1e-3
+    np.testing.assert_allclose(body.points[SYY], -1500.0 * 9.8 * depth, atol=tolerance * largest)

@@ -1,0 +1,1 @@
+"""One file per validation case, each with its `CASE`."""

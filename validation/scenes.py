@@ -1,0 +1,52 @@
+"""Simulations for validation cases: a scene with changes, led to a time."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from materials import InputError
+from mpm_core.body import Body
+from mpm_core.run import next_step
+from mpm_core.scene import Scene
+from mpm_core.simulation import Simulation
+
+SCENES = Path(__file__).resolve().parents[1] / "scenes"
+
+
+def shipped_simulation(name: str, changes: dict[str, Any] | None = None) -> Simulation:
+    """A shipped scene with values by dotted key set on top."""
+    path = SCENES / f"{name}.toml"
+    if not path.is_file():
+        raise InputError(f"{path} is missing: this case needs a checkout, whose scenes it runs")
+    return Simulation(Scene.load(path, changes))
+
+
+def simulation_of(content: dict[str, Any]) -> Simulation:
+    """The simulation of a scene given as nested dictionaries."""
+    return Simulation(Scene.from_dict(content))
+
+
+def advance(
+    simulation: Simulation,
+    end: float,
+    observe: Callable[[Simulation], None] | None = None,
+    intervals: int = 1,
+) -> None:
+    """Step to `end` [s], calling `observe` at the ends of equal intervals of time."""
+    start = simulation.time
+    for count in range(1, intervals + 1):
+        target = start + (end - start) * count / intervals
+        while simulation.time < target:
+            dt, arrival = next_step(simulation, target)
+            simulation.step(dt)
+            if arrival is not None:
+                simulation.time = arrival
+        if observe is not None:
+            observe(simulation)
+
+
+def in_order_of_generation(body: Body, row: int) -> Any:
+    """A row of the points, in the order in which they were generated; shape (n,)."""
+    values = body.points[row].copy()
+    values[body.ids - body.ids.min()] = body.points[row]
+    return values
