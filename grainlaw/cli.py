@@ -11,6 +11,7 @@ from grainlaw.element_command import element
 from grainlaw.materials_command import materials
 from grainlaw.plan_command import plan
 from grainlaw.run_command import run
+from grainlaw.validate_command import validate
 from materials import InputError, SimulationError
 
 app = typer.Typer(
@@ -26,6 +27,7 @@ app.command("element")(element)
 app.command("run")(run)
 app.command("plan")(plan)
 app.command("compare")(compare)
+app.command("validate")(validate)
 
 
 def _print_version(wanted: bool) -> None:

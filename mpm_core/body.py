@@ -63,7 +63,7 @@ class Body:
         self._grid_to_points = make_grid_to_points(basis)
         self._stress_pass = make_stress_pass(pointwise_law(self.law), keeps_shear_strain)
         nothing = allocate(self.points.shape[0], 8)[:, :0]
-        explained(self.law, self._stress_pass, nothing, 1.0, tuple(self.parameters), 0.0, self.stress_reports[:0])
+        explained(self.law, self._stress_pass, nothing, 1.0, tuple(self.parameters), 0.0, 0.0, self.stress_reports[:0])
 
     @property
     def velocities(self) -> NDArray[np.float64]:
@@ -132,9 +132,9 @@ class Body:
         coordinate = self.points[(X, Y)[axis]]
         coordinate[:] = lower + np.mod(coordinate - lower, period)
 
-    def update_stress(self, dt: float) -> None:
+    def update_stress(self, dt: float, exchange: float) -> None:
         """Rotate the stress, bring the density forward, call the law."""
-        self._stress_pass(self.points, self.point_mass, tuple(self.parameters), dt, self.stress_reports)
+        self._stress_pass(self.points, self.point_mass, tuple(self.parameters), dt, exchange, self.stress_reports)
 
     def state(self, name: str) -> NDArray[np.float64]:
         """A state variable of all points, in their present order. Raises InputError for an unknown name."""

@@ -10,14 +10,15 @@ NAMES = (
     *("x", "y", "velocity_x", "velocity_y"),
     *("gradient_xx", "gradient_xy", "gradient_yx", "gradient_yy"),
     *("stress_xx", "stress_yy", "stress_zz", "stress_xy"),
-    *("density", "shear_strain"),
+    *("density", "density_around", "shear_strain"),
 )
 X, Y = 0, 1
 VX, VY = 2, 3
 LXX, LXY, LYX, LYY = 4, 5, 6, 7
 SXX, SYY, SZZ, SXY = 8, 9, 10, 11
 DENSITY = 12
-SHEAR_STRAIN = 13
+DENSITY_AROUND = 13
+SHEAR_STRAIN = 14
 FIRST_STATE = len(NAMES)
 
 DOUBLES_PER_CACHE_LINE = 8

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-# Components of a node. Before the momentum update: mass, momentum, force; after it: mass, new and old velocity.
+# Components of a node. Before the momentum update: mass, momentum, force, volume; after it: mass, new and old velocity,
+# density.
 MASS = 0
-PX, PY, FX, FY = 1, 2, 3, 4
-NEW_VX, NEW_VY, OLD_VX, OLD_VY = 1, 2, 3, 4
-COMPONENTS = 5
+PX, PY, FX, FY, VOLUME = 1, 2, 3, 4, 5
+NEW_VX, NEW_VY, OLD_VX, OLD_VY, NODE_DENSITY = 1, 2, 3, 4, 5
+COMPONENTS = 6
 
 # Nodes beyond each side of the domain, enough for the widest stencil of a point that touches a wall.
 GHOSTS = 2

@@ -3,7 +3,22 @@
 import numpy as np
 from numba import njit, prange
 
-from mpm_core.grid import COMPONENTS, FX, FY, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, PX, PY, Grid, Window
+from mpm_core.grid import (
+    COMPONENTS,
+    FX,
+    FY,
+    MASS,
+    NEW_VX,
+    NEW_VY,
+    NODE_DENSITY,
+    OLD_VX,
+    OLD_VY,
+    PX,
+    PY,
+    VOLUME,
+    Grid,
+    Window,
+)
 
 
 def clear(grid: Grid, window: Window) -> None:
@@ -12,7 +27,7 @@ def clear(grid: Grid, window: Window) -> None:
 
 
 def update_velocities(grid: Grid, window: Window, gravity: tuple[float, float], dt: float) -> None:
-    """Turn mass, momentum and force into the old velocity and the new one, v + dt (f/m + g) [m/s]."""
+    """Turn what was scattered into density, old velocity and new velocity v + dt (f/m + g) [m/s]."""
     bounds = (window.first_x, window.last_x, window.first_y, window.last_y)
     _update(grid.nodes, grid.shape[1], *bounds, dt * gravity[0], dt * gravity[1], dt)
 
@@ -39,5 +54,6 @@ def _update(  # type: ignore[no-untyped-def]
                 new_y = old_y + dt * nodes[node + np.uint64(FY)] / mass + gravity_impulse_y
                 nodes[node + np.uint64(NEW_VX)] = new_x
                 nodes[node + np.uint64(NEW_VY)] = new_y
+                nodes[node + np.uint64(NODE_DENSITY)] = mass / nodes[node + np.uint64(VOLUME)]
                 nodes[node + np.uint64(OLD_VX)] = old_x
                 nodes[node + np.uint64(OLD_VY)] = old_y

@@ -53,7 +53,8 @@ def _level(coordinate: NDArray[np.float64], mass: NDArray[np.float64], share: fl
     count = min(len(mass), int(np.ceil(2.0 * share / mass.min())))
     lowest = np.argpartition(coordinate, count - 1)[:count]
     order = lowest[np.argsort(coordinate[lowest])]
-    position = int(np.searchsorted(np.cumsum(mass[order]), share))
+    # A share that is a whole number of points must not take one more by rounding.
+    position = int(np.searchsorted(np.cumsum(mass[order]), share * (1.0 - 1e-9)))
     return float(coordinate[order[min(position, count - 1)]])
 
 

@@ -10,6 +10,7 @@ from mpm_core.output.checkpoint import CHECKPOINT_NAME, Clock, write_checkpoint
 from mpm_core.output.frame_series import COLLECTION_NAME, FrameSeries
 from mpm_core.output.history import HISTORY_NAME, HistoryWriter, drop_rows_after
 from mpm_core.output.quantities import QUANTITIES_NAME, write_quantities
+from mpm_core.output.run_folder import RunFolder
 from mpm_core.output.summary import SUMMARY_NAME
 from mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame, drop_after
 from mpm_core.simulation import Simulation
@@ -137,4 +138,19 @@ def rewind(folder: Path, simulation: Simulation) -> None:
     if simulation.scene.output.vtu:
         FrameSeries(folder).drop_after(simulation.time)
     if simulation.scene.output.vtkhdf:
-        drop_after(folder / VTKHDF_NAME, simulation.time)
+        _rewind_vtkhdf(folder, simulation)
+
+
+def _rewind_vtkhdf(folder: Path, simulation: Simulation) -> None:
+    """Write run.vtkhdf anew from the VTU frames, or without them cut it: a killed run may have left it damaged."""
+    path = folder / VTKHDF_NAME
+    if simulation.scene.output.vtu:
+        path.unlink(missing_ok=True)
+        frames = RunFolder(folder)
+        for index in range(len(frames.frame_files)):
+            append_frame(path, frames.load_frame(index))
+        return
+    try:
+        drop_after(path, simulation.time)
+    except (OSError, KeyError) as error:
+        raise InputError(f"{path} was damaged when the run was stopped; --overwrite starts the run again") from error

@@ -20,7 +20,7 @@ FEWEST_PERIODIC_CELLS = 4
 class Section(BaseModel):
     """A table of a scene file; unknown keys are refused."""
 
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
 
 
 class GridSection(Section):
@@ -59,8 +59,9 @@ class WallSection(Section):
 
     @model_validator(mode="after")
     def _coefficient_belongs_to_friction(self) -> "WallSection":
-        given = "coefficient" in self.model_fields_set
-        if given != (self.kind == "friction"):
+        if self.kind == "friction" and "coefficient" not in self.model_fields_set:
+            raise ValueError("kind = 'friction' needs a coefficient")
+        if self.kind != "friction" and self.coefficient > 0:
             raise ValueError("a coefficient belongs to kind = 'friction', and to no other")
         return self
 
@@ -111,7 +112,9 @@ class TransferSection(Section):
         description="affine_flip keeps velocities below the grid's resolution for `time_constant`; apic drops them",
     )
     time_constant: float = Field(
-        default=0.01, gt=0, description="decay time of velocities below the grid's resolution [s]; affine_flip only"
+        default=0.01,
+        gt=0,
+        description="decay time of velocities (affine_flip only) and of volumes below the grid's resolution [s]",
     )
 
 

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 
 Points = NDArray[np.float64]
-Corner = tuple[float, float]
+Corner = Annotated[tuple[float, float], Field(strict=False)]
 
 
 class Shape(BaseModel):
     """A region of the plane."""
 
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
 
     def bounds(self) -> tuple[Corner, Corner]:
         """Lower and upper corner of the bounding box [m]."""
@@ -91,7 +91,7 @@ class MeshRegion(Shape):
     """The region covered by the triangles and quadrilaterals of a mesh file, in any format that meshio reads."""
 
     kind: Literal["mesh"]
-    file: Path = Field(description="mesh file; a relative path counts from the scene file")
+    file: Path = Field(strict=False, description="mesh file; a relative path counts from the scene file")
     _corners: Points = PrivateAttr()
     _cell_finder: Any = PrivateAttr()
 

@@ -95,7 +95,7 @@ class Simulation:
         for body in self.bodies:
             body.from_grid(grid, dt, self._memory(dt))
         for body in self.bodies:
-            body.update_stress(dt)
+            body.update_stress(dt, dt / self.scene.transfer.time_constant)
         self.time += dt
         self.steps += 1
         self._take_reports(dt)

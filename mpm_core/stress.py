@@ -2,6 +2,12 @@
 
 For each point: rotate the stress with the material (exact rotation by the increment of spin; Hughes & Winget 1980),
 bring the density to the end of the step (midpoint rule for d ln rho = -tr D dt), call the law.
+
+Volumes below the grid's resolution. In a flow each point sums up its own error of volume, which no force of the grid
+can see: after a collapse half of the points of a stiff law would carry no stress, the others twice the pressure. While
+the material deforms, a point also takes on a volumetric strain that brings its density towards that of the
+material around it, ln(rho_around/rho), over the time constant of the transfer. At rest the exchange stops, as it must not
+pump: its rate is multiplied by gamma_dot/(gamma_dot + QUIET_RATE).
 """
 
 from collections.abc import Callable
@@ -13,9 +19,10 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw, named
-from materials.tensor import SymmetricTensor, added, contraction, shear_strain_rate
+from materials.tensor import SymmetricTensor, added, contraction, isotropic, shear_strain_rate, trace
 from mpm_core.columns import (
     DENSITY,
+    DENSITY_AROUND,
     FIRST_STATE,
     LXX,
     LXY,
@@ -30,6 +37,9 @@ from mpm_core.columns import (
     VY,
 )
 from mpm_core.transfer import BLOCK, FAST
+
+# The shear rate [1/s] below which material counts as at rest and exchanges no volume.
+QUIET_RATE = 0.1
 
 # What `stress_pass` reports for each block of points.
 MAX_SIGNAL_SPEED, INTERNAL_WORK, MAX_INCREMENT = range(3)
@@ -95,6 +105,15 @@ def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
+def exchanged_strain(density, around, shear_rate, exchange):  # type: ignore[no-untyped-def]
+    """The compressive strain of one step towards the density around; `exchange` is dt over the time constant."""
+    share = exchange * shear_rate / (shear_rate + QUIET_RATE)
+    # ln(around/density) to third order, bounded by 2 for points that have lost contact
+    difference = 2.0 * (around - density) / (around + density)
+    return difference * share / (1.0 + share)
+
+
+@register_jitable
 def ordered_bits(value):  # type: ignore[no-untyped-def]
     """The bits of a non-negative float as an integer: the same order, and NaN above everything.
 
@@ -104,7 +123,7 @@ def ordered_bits(value):  # type: ignore[no-untyped-def]
 
 
 def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..., Any]:
-    """The stress pass of a law; it takes the law's parameters as a plain tuple.
+    """The stress pass of a law; it takes the law's parameters as a plain tuple, and dt over the time constant.
 
     Reports per block of points: the largest signal speed c + |v| [m/s], the work of the stress on the strain [J/m], and
     the largest volumetric strain increment of the step. Where anything is not finite, the last one is NaN.
@@ -117,24 +136,27 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
     @register_jitable
     @named(mark)
     def update_block(  # type: ignore[no-untyped-def]
-        vx, vy, lxx, lxy, lyx, lyy, sxx, syy, szz, sxy, density, shear_strain, states, parameters, dt
+        vx, vy, lxx, lxy, lyx, lyy, sxx, syy, szz, sxy, density, around, shear_strain, states, parameters, dt, exchange
     ):
         law_parameters = parameter_class(*parameters)
         work = 0.0
         fastest, largest = np.int64(0), np.int64(0)
         for p in range(len(vx)):
-            strain_rate = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
+            motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
+            shear_rate = shear_strain_rate(motion)
             xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
-            half_increment = 0.5 * dt * (lxx[p] + lyy[p])
+            closing = exchanged_strain(density[p], around[p], shear_rate, exchange)
+            strain_rate = added(motion, isotropic(-closing / (3.0 * dt)))
+            half_increment = 0.5 * (dt * trace(motion) - closing)
             new_density = density[p] * (1.0 - half_increment) / (1.0 + half_increment)
             old_stress = SymmetricTensor(xx, yy, szz[p], xy, 0.0, 0.0)
             stress, state = update(old_stress, strain_rate, new_density, load(states, p), law_parameters, dt)
             store(states, p, state)
-            work += contraction(added(old_stress, stress), strain_rate) / (density[p] + new_density)
+            work += contraction(added(old_stress, stress), motion) / (density[p] + new_density)
             sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
             density[p] = new_density
             if keeps_shear_strain:
-                shear_strain[p] += dt * shear_strain_rate(strain_rate)
+                shear_strain[p] += dt * shear_rate
             signal_speed = sound_speed(stress, new_density, state, law_parameters) + np.sqrt(
                 vx[p] * vx[p] + vy[p] * vy[p]
             )
@@ -145,7 +167,7 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
 
     @njit(parallel=True, fastmath=FAST, error_model="numpy", cache=True)
     @named(mark)
-    def stress_pass(points, point_mass, parameters, dt, reports):  # type: ignore[no-untyped-def]
+    def stress_pass(points, point_mass, parameters, dt, exchange, reports):  # type: ignore[no-untyped-def]
         assert source_hash
         for block in prange(reports.shape[0]):
             rows = points[:, block * BLOCK : (block + 1) * BLOCK]
@@ -161,10 +183,12 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
                 rows[SZZ],
                 rows[SXY],
                 rows[DENSITY],
+                rows[DENSITY_AROUND],
                 rows[SHEAR_STRAIN],
                 rows[FIRST_STATE:],
                 parameters,
                 dt,
+                exchange,
             )
             reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
             reports[block, INTERNAL_WORK] = point_mass * dt * work

@@ -8,6 +8,9 @@ top of it the point keeps what the grid did not resolve of its velocity, v_p - s
 
 so that tau = 0 is APIC, tau = infinity affine FLIP, and the loss per second does not depend on the step.
 
+The grid also returns to each point the density of the material around it, the ratio of mass and volume at the nodes,
+towards which `stress` lets its own density relax.
+
 Points come in stripes of grid columns (`sorting`). Stripes of even number are scattered first, then those of odd
 number: within each half no two stripes share a node, so that the sums come out the same for any number of threads.
 """
@@ -20,8 +23,8 @@ from numba import njit, prange
 
 from materials.compilation import named
 from mpm_core.basis import Basis, make_stencil
-from mpm_core.columns import DENSITY, LXX, LXY, LYX, LYY, SXX, SXY, SYY, VX, VY, X, Y
-from mpm_core.grid import COMPONENTS, FX, FY, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, PX, PY
+from mpm_core.columns import DENSITY, DENSITY_AROUND, LXX, LXY, LYX, LYY, SXX, SXY, SYY, VX, VY, X, Y
+from mpm_core.grid import COMPONENTS, FX, FY, MASS, NEW_VX, NEW_VY, NODE_DENSITY, OLD_VX, OLD_VY, PX, PY, VOLUME
 
 # Reordering is harmless to sums; 'nnan' and 'ninf' are left out so that NaN stays visible.
 FAST = {"contract", "reassoc", "arcp", "nsz"}
@@ -34,9 +37,9 @@ REPORTS = 8
 
 
 def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
-    """Scatter mass, momentum and internal force of the stripes of one parity to the grid.
+    """Scatter mass, volume, momentum and internal force of the stripes of one parity to the grid.
 
-    m_i += w_i m;  (m v)_i += w_i m (v + L (x_i - x_p));  f_i -= w_i V sigma (x_i - x_p) / D
+    m_i += w_i m;  V_i += w_i V;  (m v)_i += w_i m (v + L (x_i - x_p));  f_i -= w_i V sigma (x_i - x_p) / D
     """
     width, stencil = basis.width, make_stencil(basis)
 
@@ -55,9 +58,9 @@ def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
                 for p in range(stripe_starts[stripe], stripe_starts[stripe + 1]):
                     i, fx, wx, moment_x = stencil((x[p] - origin_x) * inverse_size, ghosts[0], ghosts[1])
                     j, fy, wy, moment_y = stencil((y[p] - origin_y) * inverse_size, ghosts[2], ghosts[3])
-                    volume = point_mass / density[p] * inverse_size
-                    force_x = volume / moment_x
-                    force_y = volume / moment_y
+                    volume = point_mass / density[p]
+                    force_x = volume * inverse_size / moment_x
+                    force_y = volume * inverse_size / moment_y
                     momentum_x = point_mass * vx[p]
                     momentum_y = point_mass * vy[p]
                     axy, ayy = affine * lxy[p], affine * lyy[p]
@@ -76,6 +79,7 @@ def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
                             nodes[node + np.uint64(MASS)] += w * point_mass
                             nodes[node + np.uint64(PX)] += w * (px + axy * dy)
                             nodes[node + np.uint64(PY)] += w * (py + ayy * dy)
+                            nodes[node + np.uint64(VOLUME)] += w * volume
                             nodes[node + np.uint64(FX)] -= w * (qx + fxy * dy)
                             nodes[node + np.uint64(FY)] -= w * (qy + fyy * dy)
 
@@ -83,7 +87,7 @@ def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
 
 
 def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
-    """Gather velocity and velocity gradient from the grid and move the points.
+    """Gather velocity, velocity gradient and the density around from the grid, and move the points.
 
     `memory` is exp(-dt/tau). Reports per block of points: kinetic energy [J/m], corners of the bounding box [m], the
     largest speed at which a point moves [m/s] and the momentum of that motion [kg/s].
@@ -97,6 +101,7 @@ def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
     ):
         x, y, vx, vy = points[X], points[Y], points[VX], points[VY]
         lxx, lxy, lyx, lyy = points[LXX], points[LXY], points[LYX], points[LYY]
+        density_around = points[DENSITY_AROUND]
         inverse_size = 1.0 / cell_size
         count = points.shape[1]
         for block in prange(reports.shape[0]):
@@ -108,6 +113,7 @@ def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
                 j, fy, wy, moment_y = stencil((y[p] - origin_y) * inverse_size, ghosts[2], ghosts[3])
                 new_vx, new_vy, old_vx, old_vy = 0.0, 0.0, 0.0, 0.0
                 gxx, gxy, gyx, gyy = 0.0, 0.0, 0.0, 0.0
+                around = 0.0
                 for a in range(width):
                     dx = a - fx
                     row = np.uint64(((i + a) * nodes_y + j) * COMPONENTS)
@@ -123,12 +129,14 @@ def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
                         gxy += ux * dy
                         gyx += uy * dx
                         gyy += uy * dy
+                        around += w * nodes[node + np.uint64(NODE_DENSITY)]
                         old_vx += w * nodes[node + np.uint64(OLD_VX)]
                         old_vy += w * nodes[node + np.uint64(OLD_VY)]
                 scale_x = inverse_size / moment_x
                 scale_y = inverse_size / moment_y
                 lxx[p], lxy[p] = gxx * scale_x, gxy * scale_y
                 lyx[p], lyy[p] = gyx * scale_x, gyy * scale_y
+                density_around[p] = around
                 velocity_x = new_vx + memory * (vx[p] - old_vx)
                 velocity_y = new_vy + memory * (vy[p] - old_vy)
                 vx[p], vy[p] = velocity_x, velocity_y

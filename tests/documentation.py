@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -25,7 +26,9 @@ def _as_shell(block: re.Match[str]) -> str:
     return body
 
 
-def run_page(page: Path, clone: Path, binaries: Path = Path(sys.executable).parent) -> str:
+def run_page(
+    page: Path, clone: Path, binaries: Path = Path(sys.executable).parent, settings: Mapping[str, str] | None = None
+) -> str:
     """Run a page in a folder that looks like the top of a clone, with a virtual environment's commands.
 
     Returns what the commands printed; fails with it if one of them fails.
@@ -36,8 +39,9 @@ def run_page(page: Path, clone: Path, binaries: Path = Path(sys.executable).pare
     environment = {
         **os.environ,
         "PATH": f"{binaries}{os.pathsep}{os.environ['PATH']}",
-        # Stands for --no-build-isolation: pip builds with the setuptools at hand instead of downloading one.
-        "PIP_NO_BUILD_ISOLATION": "0",
+        # Small scenes gain nothing from threads, and lose much where the machine has other work.
+        "NUMBA_NUM_THREADS": "1",
+        **(settings or {}),
     }
     done = subprocess.run(
         ["bash", "-c", page_script(page)], cwd=clone, env=environment, capture_output=True, text=True, check=False

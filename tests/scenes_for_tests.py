@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import tomli_w
 
+from materials import registry
 from mpm_core import Scene, Simulation
 from mpm_core.columns import LXX, LYY, VX, VY, X, Y
 from mpm_core.grid import COMPONENTS, MASS, OLD_VX, OLD_VY
@@ -119,3 +120,73 @@ def call_command_line(monkeypatch, *arguments):
     with pytest.raises(SystemExit) as exit_:
         main()
     return exit_.value.code or 0
+
+
+PLUGIN = '''
+"""A spring law for one test, changed in one place at a time."""
+
+import math
+from typing import Annotated, NamedTuple
+
+from materials import Law, Parameter, SymmetricTensor, added, hookimpl, scaled, trace
+
+
+class Parameters(NamedTuple):
+    stiffness: Annotated[float, Parameter({unit}, "stiffness E", "(0, inf)")]
+
+
+class State(NamedTuple):
+    pass
+
+
+def initial_state(stress, density, parameters):
+    return State()
+
+
+def update(stress, strain_rate, density, state, parameters, dt):
+    new = added(stress, scaled(strain_rate, parameters.stiffness * dt))
+    {update}
+    return new, state
+
+
+def sound_speed(stress, density, state, parameters):
+    {sound_speed}
+    return math.sqrt(parameters.stiffness / density)
+
+
+@hookimpl
+def grainlaw_materials():
+    {hook}
+    return [Law("{name}", "a spring", Parameters, State, initial_state, update, sound_speed)]
+'''
+SOUND_PLUGIN = {"unit": '"Pa"', "update": "pass", "sound_speed": "pass", "hook": "pass", "name": "spring"}
+
+
+def write_plugin(path, **changes):
+    """Write a plugin of one law, `spring`, with parts replaced; return its path."""
+    path.write_text(PLUGIN.format(**SOUND_PLUGIN | changes))
+    return path
+
+
+# A block of the plugin's law that falls on the floor of a box.
+FALLING_SPRING = changed(
+    BLOCK,
+    {
+        "gravity": [0.0, -9.81],
+        "time.end": 0.5,
+        "material": {"spring": {"stiffness": 2e4}},
+        "body.0.material": "spring",
+        "body.0.shape.lower": [0.3, 0.1],
+        "body.0.shape.upper": [0.7, 0.5],
+        "output": {"fields": ["velocity"], "pictures": False, "interval": 0.05},
+    },
+)
+
+
+@pytest.fixture
+def fresh_registry():
+    """The registry as it is, restored after a test that loads plugins into it."""
+    known = registry()
+    laws, refusals = dict(known.laws), list(known.refusals)
+    yield known
+    known.laws, known.refusals = laws, refusals

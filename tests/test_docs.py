@@ -19,7 +19,11 @@ from mpm_core.recorder import OWN_FILES
 
 PAGES = sorted(DOCS.glob("*.md"))
 # test_template_package.py follows adding-a-law.md in an environment of its own.
-RUNNABLE_PAGES = [page for page in PAGES if page.name != "adding-a-law.md" and "\n```sh runnable\n" in page.read_text()]
+RUNNABLE_PAGES = [
+    page
+    for page in (ROOT / "README.md", *PAGES)
+    if page.name != "adding-a-law.md" and "\n```sh runnable\n" in page.read_text(encoding="utf-8")
+]
 COMMANDS: dict[str, Any] = typer.main.get_command(app).commands
 
 
@@ -94,6 +98,7 @@ def test_commands_of_a_page_work(page: Path, tmp_path: Path):
 
 def test_pages_show_commands_to_run():
     assert {page.stem for page in RUNNABLE_PAGES} >= {
+        "README",
         "command-line",
         "element-tests",
         "output",

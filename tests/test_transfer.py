@@ -32,7 +32,9 @@ def test_mass_and_momentum_reach_the_grid_whole(basis, shape):
     case.step(INSTANT)
     mass, received = node_mass_and_momentum(case)
     assert mass.sum() == pytest.approx(body.count * body.point_mass, rel=1e-12)
-    np.testing.assert_allclose(received.sum(axis=(1, 2)), brought, rtol=1e-12, atol=1e-12 * body.point_mass * body.count)
+    np.testing.assert_allclose(
+        received.sum(axis=(1, 2)), brought, rtol=1e-12, atol=1e-12 * body.point_mass * body.count
+    )
 
 
 @pytest.mark.parametrize("scheme", ["apic", "affine_flip"])

@@ -36,17 +36,17 @@ class Measurement:
     @property
     def within_band(self) -> bool:
         """Whether the error is a number and no larger than the band."""
-        return self.error <= self.band
+        return bool(self.error <= self.band)
 
 
 def relative_error(name: str, unit: str, measured: float, reference: float, band: float) -> Measurement:
     """The error as a share of the reference."""
-    return Measurement(name, unit, measured, reference, abs(measured - reference) / abs(reference), band)
+    return scaled_error(name, unit, measured, reference, abs(reference), band)
 
 
 def scaled_error(name: str, unit: str, measured: float, reference: float, scale: float, band: float) -> Measurement:
     """The error as a share of a scale of the problem."""
-    return Measurement(name, unit, measured, reference, abs(measured - reference) / scale, band)
+    return Measurement(name, unit, float(measured), float(reference), float(abs(measured - reference) / scale), band)
 
 
 def upper_bound(name: str, unit: str, measured: float, band: float) -> Measurement:
@@ -81,7 +81,7 @@ class Convergence:
     @property
     def reaches_order(self) -> bool:
         """Whether the fitted order is the one asked for."""
-        return self.least_order is None or self.fitted_order >= self.least_order
+        return self.least_order is None or bool(self.fitted_order >= self.least_order)
 
 
 @dataclass(frozen=True)

@@ -51,11 +51,11 @@ def read_checkpoint(folder: Path, simulation: Simulation) -> Clock:
     """
     path = folder / CHECKPOINT_NAME
     if not path.is_file():
-        raise InputError(f"{folder} holds no {CHECKPOINT_NAME} to resume from")
+        raise InputError(f"{folder} holds no {CHECKPOINT_NAME} to resume from; --overwrite starts the run again")
     try:
         with h5py.File(path) as file:
             return _restore(file, simulation)
-    except (OSError, KeyError) as error:
+    except (OSError, KeyError, TypeError) as error:
         raise InputError(f"{path} cannot be read: {error}") from error
     except ValueError as error:
         raise InputError(f"{path} belongs to another scene: {error}") from error

@@ -75,9 +75,9 @@ CASE = Case(
     name="mcc_one_dimensional_compression",
     title="one-dimensional compression, Modified Cam Clay",
     proves="the direction of plastic flow: K0 depends on it and on nothing that a triaxial path tests",
-    reference="eta of d(eps_s) = 2/3 d(eps_v) with eta constant: (lambda - kappa) 2 eta/(M^2 - eta^2) + kappa eta/(3 G/K) "
-    "= 2/3 lambda; K0 = (3 - eta)/(3 + 2 eta) = 0.64763; M 1.2, lambda 0.10, kappa 0.02, nu 0.3; on the way there the "
-    "rate equations by quadrature of order 8",
+    reference="eta of d(eps_s) = 2/3 d(eps_v) with eta constant: (lambda - kappa) 2 eta/(M^2 - eta^2) + kappa "
+    "eta/(3 G/K) = 2/3 lambda; K0 = (3 - eta)/(3 + 2 eta) = 0.64763; M 1.2, lambda 0.10, kappa 0.02, nu 0.3; "
+    "on the way there the rate equations, integrated to 1e-12",
     norm="relative error",
     mistake="M = 1.25 instead of 1.2",
     measure=measure,

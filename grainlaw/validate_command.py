@@ -1,0 +1,118 @@
+"""`grainlaw validate`: the laws and the core against exact and published answers."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from validation.case import Case
+    from validation.result import CaseResult
+
+WIDTH = 140
+
+
+def validate(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[CASE]...", help="Cases to run; default: all.", show_default=False)
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Coarse and short, for every change.")] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Write results.json, junit.xml and report.html into this folder."),
+    ] = None,
+    list_cases: Annotated[bool, typer.Option("--list", help="List the cases and what each proves.")] = False,
+) -> None:
+    """Run validation cases: each has a reference, a band and a negative control that must leave the band.
+
+    Exit code 1 if a case leaves its band or a control does not.
+    """
+    from validation.catalogue import chosen_cases
+
+    cases = chosen_cases(names or [])
+    if list_cases:
+        _print_list(cases)
+        return
+
+    from validation.case import Effort
+    from validation.result import run_cases
+
+    if out is not None:
+        from validation.report.write import prepare
+
+        prepare(out)
+    results = run_cases(
+        cases, Effort.QUICK if quick else Effort.FULL, lambda case: typer.echo(f"{case.name} ...", err=True)
+    )
+    _print_results(results)
+    if out is not None:
+        from validation.report.write import write_report
+
+        for path in write_report(out, results):
+            typer.echo(f"  {path}")
+    if not all(result.passed for result in results):
+        raise typer.Exit(1)
+
+
+def _print_list(cases: "Sequence[Case]") -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD)
+    table.add_column("case", no_wrap=True)
+    table.add_column("proves")
+    table.add_column("the control's mistake")
+    for case in cases:
+        table.add_row(case.name, case.proves, case.mistake)
+    Console(width=WIDTH, markup=False).print(table)
+
+
+def _print_results(results: "Sequence[CaseResult]") -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD)
+    table.add_column("case", no_wrap=True)
+    table.add_column("verdict")
+    table.add_column("decisive measurement")
+    for heading in ("measured", "reference", "error", "band", "control's error", "order", "wall [s]"):
+        table.add_column(heading, justify="right")
+    for result in results:
+        table.add_row(*_row(result))
+    console = Console(width=WIDTH, markup=False)
+    console.print(table)
+    for result in results:
+        _print_details(result)
+    typer.echo(f"{sum(result.passed for result in results)} of {len(results)} cases pass")
+
+
+def _row(result: "CaseResult") -> list[str]:
+    worst, control = result.worst, result.worst_of_control
+    numbers = ["", "", "", ""]
+    if worst is not None:
+        reference = "" if worst.reference is None else f"{worst.reference:.6g}"
+        numbers = [f"{worst.measured:.6g}", reference, f"{worst.error:.2e}", f"{worst.band:.0e}"]
+    return [
+        result.case.name,
+        "pass" if result.passed else "FAIL",
+        worst.name if worst is not None else result.failure,
+        *numbers,
+        "" if control is None else f"{control.error:.2e}",
+        ", ".join(f"{found.fitted_order:.2f}" for found in result.evidence.convergence),
+        f"{result.wall_time:.1f}",
+    ]
+
+
+def _print_details(result: "CaseResult") -> None:
+    """Observed orders, and why a case failed."""
+    for found in result.evidence.convergence:
+        steps = ", ".join(f"{size:.3g}: {error:.2e}" for size, error in zip(found.sizes, found.errors, strict=True))
+        orders = ", ".join(f"{order:.2f}" for order in found.orders)
+        typer.echo(f"{result.case.name}: {found.name} over {found.against}: {steps}; orders {orders}")
+    for note in result.evidence.notes:
+        typer.echo(f"{result.case.name}: {note}")
+    for reason in result.reasons:
+        typer.echo(f"{result.case.name} FAILS: {reason}")

@@ -1,0 +1,89 @@
+"""The shape of the project: imports run one way, laws use the public names only, listing laws stays light."""
+
+import ast
+import subprocess
+import sys
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+
+import materials
+
+ROOT = Path(__file__).resolve().parent.parent
+ALLOWED = {
+    "materials": {"materials"},
+    "plugins": {"materials"},
+    "mpm_core": {"materials", "mpm_core"},
+    "validation": {"materials", "mpm_core", "validation"},
+    "grainlaw": {"materials", "mpm_core", "validation", "grainlaw"},
+}
+HEAVY = {"h5py", "matplotlib", "meshio", "numba", "numpy", "pyvista", "scipy", "vtk", "vtkmodules"}
+
+
+def modules(folder: str) -> list[Path]:
+    return sorted((ROOT / folder).rglob("*.py"))
+
+
+def imports(path: Path) -> list[tuple[str, str]]:
+    """(module, name) for every import anywhere in a file; the name is empty for `import module`."""
+    found = []
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found += [(alias.name, "") for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            found += [(node.module or "", alias.name) for alias in node.names]
+    return found
+
+
+@pytest.mark.parametrize("folder", ALLOWED)
+def test_imports_run_one_way(folder):
+    forbidden = ALLOWED.keys() - ALLOWED[folder]
+    wrong = [
+        f"{path.relative_to(ROOT)} imports {module}"
+        for path in modules(folder)
+        for module, _ in imports(path)
+        if module.partition(".")[0] in forbidden
+    ]
+    assert wrong == []
+
+
+@pytest.mark.parametrize("path", modules("plugins"), ids=lambda path: path.stem)
+def test_laws_use_public_names_of_materials_only(path):
+    used = [(module, name) for module, name in imports(path) if module.partition(".")[0] == "materials"]
+    assert [module for module, _ in used if module != "materials"] == []
+    assert [name for _, name in used if name not in materials.__all__] == []
+
+
+def test_public_names_exist_once():
+    assert sorted(set(materials.__all__)) == sorted(materials.__all__)
+    assert [name for name in materials.__all__ if not hasattr(materials, name)] == []
+
+
+def test_no_module_is_a_drawer_for_odds_and_ends():
+    names = {"utils", "util", "helpers", "common", "misc"}
+    assert [path for folder in ALLOWED for path in modules(folder) if names & {path.stem, path.parent.name}] == []
+
+
+def test_every_built_in_law_has_its_entry_point():
+    files = {path.stem for path in (ROOT / "plugins").glob("*.py")} - {"__init__"}
+    declared = {found.value for found in entry_points(group="grainlaw.materials")}
+    assert {f"plugins.{name}" for name in files} <= declared
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["materials"], ["materials", "mu_i_lc", "--json"]])
+def test_listing_laws_imports_no_heavy_library(arguments):
+    program = f"""
+import sys
+from grainlaw.cli import main
+sys.argv = ["grainlaw", *{arguments!r}]
+try:
+    main()
+finally:
+    print("imported:", *{{name.partition(".")[0] for name in sys.modules}}, file=sys.stderr)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    imported = done.stderr.rpartition("imported:")[2].split()
+    assert "materials" in imported
+    assert HEAVY & set(imported) == set()

@@ -1,0 +1,108 @@
+"""Steady flow of a granular layer down a rough incline: Bagnold's profile."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from mpm_core.columns import VX, Y
+from mpm_core.simulation import Simulation
+from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error, upper_bound
+from validation.scenes import advance, shipped_simulation
+
+BAND = 2e-2
+ANGLE, GRAVITY = math.radians(24.0), 9.81
+STATIC_FRICTION, DYNAMIC_FRICTION, ENGINEERING_CONSTANT = 0.3819, 0.6435, 0.279
+DIAMETER, HEIGHT, SOLID_FRACTION = 0.0005, 0.02, 0.6
+CONSTANT = "material.mu_i_lc.inertial_number_constant"
+# The slowest mode of the layer decays within 1.2 s.
+END, KEPT = 8.0, 2.0
+QUICK_CELL = {"grid.cell_size": 0.002}
+
+
+def inertial_number() -> float:
+    """I in the engineering rate, constant in depth."""
+    slope = math.tan(ANGLE)
+    return ENGINEERING_CONSTANT * (slope - STATIC_FRICTION) / (DYNAMIC_FRICTION - slope)
+
+
+def exact_velocity(z: Any) -> Any:
+    """Velocity [m/s] at a height z [m] above the floor."""
+    factor = 2.0 / 3.0 * inertial_number() / DIAMETER * math.sqrt(SOLID_FRACTION * GRAVITY * math.cos(ANGLE))
+    return factor * (HEIGHT**1.5 - (HEIGHT - np.clip(z, 0.0, HEIGHT)) ** 1.5)
+
+
+def flow(changes: dict[str, Any], end: float, steady_start: bool = False) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Heights [m] and velocities [m/s] of the points at the end, and rows of time, surface velocity, thickness.
+
+    From rest or, for a steady start, from Bagnold's profile.
+    """
+    simulation = shipped_simulation("incline", changes)
+    body = simulation.bodies[0]
+    if steady_start:
+        body.points[VX] = exact_velocity(body.points[Y])
+    history = [(0.0, float(body.points[VX].max()), HEIGHT)]
+    half_spacing = 0.25 * simulation.grid.cell_size
+
+    def observe(present: Simulation) -> None:
+        y, v = body.points[Y], body.points[VX]
+        top = y > y.max() - half_spacing
+        history.append((present.time, float(v[top].mean()), float(y.max()) + half_spacing))
+
+    advance(simulation, end, observe, intervals=40)
+    return body.points[Y].copy(), body.points[VX].copy(), np.array(history)
+
+
+def measurements(label: str, y: np.ndarray, v: np.ndarray, history: np.ndarray) -> tuple[Measurement, ...]:
+    """Profile and thickness at the end."""
+    surface_speed = float(exact_velocity(HEIGHT))
+    largest = float(np.abs(v - exact_velocity(y)).max()) / surface_speed
+    return (
+        relative_error(f"{label}: velocity at the surface", "m/s", float(history[-1, 1]), surface_speed, BAND),
+        upper_bound(f"{label}: largest error of the profile", "1", largest, BAND),
+        relative_error(f"{label}: thickness of the layer", "m", float(history[-1, 2]), HEIGHT, BAND),
+    )
+
+
+def measure(effort: Effort) -> Evidence:
+    """20 cells across the layer, 10 in quick."""
+    changes = QUICK_CELL if effort is Effort.QUICK else {}
+    y, v, history = flow(changes, END)
+    found = measurements(f"from rest, {END:g} s", y, v, history)
+    found += measurements(f"from the profile, {KEPT:g} s", *flow(changes, KEPT, steady_start=True))
+    z = np.linspace(0.0, HEIGHT, 60)
+    order = np.argsort(y)[:: max(1, len(y) // 80)]
+    profile = Figure(
+        f"Velocity over height after {END:g} s",
+        "velocity [m/s]",
+        "height [m]",
+        (curve("Bagnold", exact_velocity(z), z, "reference"), curve("points", v[order], y[order])),
+    )
+    exact = float(exact_velocity(HEIGHT))
+    development = Figure(
+        "Velocity at the surface from rest",
+        "time [s]",
+        "velocity [m/s]",
+        (curve("steady", [0.0, END], [exact, exact], "reference"), curve("measured", history[:, 0], history[:, 1])),
+    )
+    best = history[np.argmin(np.abs(history[:, 1] - exact))]
+    note = f"the velocity at the surface is nearest to the exact one at t = {best[0]:.2f} s: {best[1]:.4f} m/s"
+    return Evidence(found, figures=(profile, development), notes=(note,))
+
+
+def control(effort: Effort) -> tuple[Measurement, ...]:
+    """The literature's I_0 taken over without converting it to the law's own shear rate."""
+    return measurements("control", *flow(QUICK_CELL | {CONSTANT: ENGINEERING_CONSTANT}, KEPT, steady_start=True))
+
+
+CASE = Case(
+    name="bagnold_incline",
+    title="granular layer on an incline of 24 degrees",
+    proves="steady flow of mu(I) under gravity: friction balances weight in every depth, at the right inertial number",
+    reference="u(z) = 2/3 (I/d) sqrt(phi g cos theta) (H^1.5 - (H - z)^1.5), I = I_0 (tan theta - mu_0)/(mu_d - tan "
+    "theta) in the engineering rate (Bagnold scaling of mu(I); GDR MiDi 2004); glass beads: 0.7793 m/s at the surface",
+    norm="largest error over the points, over the exact velocity at the surface",
+    mistake="I_0 of the engineering shear rate used for gamma_dot = sqrt(1/2 D_d:D_d)",
+    measure=measure,
+    control=control,
+)
