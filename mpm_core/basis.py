@@ -17,6 +17,11 @@ from numba.extending import register_jitable
 
 from materials.compilation import named
 
+# Towards a wall the moment goes to zero with the mass of the row inside, and stiffness over mass grows without bound.
+# Below this value, at a twentieth of a cell from the wall, a point is taken to be that far: no explicit step that is
+# stable elsewhere then fails there. Points are generated farther away than that.
+SMALLEST_MOMENT_AT_WALL = 0.05
+
 
 @dataclass(frozen=True)
 class Basis:
@@ -142,10 +147,10 @@ def make_stencil(basis: Basis) -> Callable[..., tuple[int, float, tuple[float, .
         w = weights(f)
         second_moment = moment(f)
         if first == lower_ghost:
-            second_moment = max(second_moment - 2.0 * w[0], 1e-12)
+            second_moment = max(second_moment - 2.0 * w[0], SMALLEST_MOMENT_AT_WALL)
             w = at_lower_wall(w)
         elif first + width - 1 == upper_ghost:
-            second_moment = max(second_moment - 2.0 * w[width - 1], 1e-12)
+            second_moment = max(second_moment - 2.0 * w[width - 1], SMALLEST_MOMENT_AT_WALL)
             w = at_upper_wall(w)
         return first, f, w, second_moment
 

@@ -5,9 +5,9 @@ bring the density to the end of the step (midpoint rule for d ln rho = -tr D dt)
 
 Volumes below the grid's resolution. In a flow each point sums up its own error of volume, which no force of the grid
 can see: after a collapse half of the points of a stiff law would carry no stress, the others twice the pressure. While
-the material deforms, a point also takes on a volumetric strain that brings its density towards that of the
-material around it, ln(rho_around/rho), over the time constant of the transfer. At rest the exchange stops, as it must not
-pump: its rate is multiplied by gamma_dot/(gamma_dot + QUIET_RATE).
+the material deforms, a point also takes on a volumetric strain that brings its density towards that of the material
+around it, ln(rho_around/rho), over the time constant of the transfer. At rest the exchange stops, as it must not pump:
+its rate is multiplied by gamma_dot/(gamma_dot + QUIET_RATE).
 """
 
 from collections.abc import Callable

@@ -11,8 +11,8 @@ Return mapping. Over a step, p and p_c follow their exponential laws exactly, an
 With a = ln(2 p_trial/p_c) and B = 1/kappa + 1/(lambda - kappa), the critical state 2p = p_c is reached at the plastic
 volume strain a/B. The strain is therefore written as (1 - theta) a/B with theta in (0, 1]: theta = 1 is the elastic
 trial state, where F > 0, and theta -> 0 the critical state with q -> 0, where F < 0, on the dry side as on the wet one.
-The root is bracketed from the start and found by Newton's method in Lambda, with bisection in theta wherever that
-leaves the bracket.
+The root is bracketed from the start and found by Newton's method, near p = p_c in Lambda and elsewhere in the logarithm
+of 1 + 6 G Lambda/M^2, by which s shrinks, with bisection in theta wherever that leaves the bracket.
 
 Grains carry no tension. Where the pressure would fall below `stress_free_pressure` the point opens: its stress is zero
 and `gap` keeps the volumetric strain since, so that pressure returns only when the gap has closed.
@@ -49,6 +49,7 @@ from materials import (
 
 TOLERANCE = 1e-11
 MAXIMUM_ITERATIONS = 100
+LONGEST_STEP = 30.0
 
 
 class Parameters(NamedTuple):
@@ -87,6 +88,15 @@ class YieldState(NamedTuple):
     yield_function: float
     residual: float
     derivative: float
+    relaxation_rate: float
+
+
+class Bracket(NamedTuple):
+    """The theta to try next, and between which two the root lies."""
+
+    theta: float
+    below: float
+    above: float
 
 
 def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
@@ -179,22 +189,43 @@ def return_to_yield_surface(
 ) -> YieldState:
     """The state with F = 0 at the end of the step; NaN if the iteration does not converge."""
     wetness = math.log(2.0 * start_pressure / preconsolidation_pressure) + growth
-    # On the wet side p > p_c for theta > ln 2 / a: no stress there can be on the ellipse.
-    theta_above = min(1.0, math.log(2.0) / wetness) if wetness > 0.0 else 1.0
-    theta_below = 0.0
-    theta = theta_above
+    bracket = first_bracket(wetness)
     for _ in range(MAXIMUM_ITERATIONS):
-        new = yield_state(theta, start_pressure, start_deviator, growth, wetness, shear, parameters)
-        if abs(new.yield_function) <= TOLERANCE * new.mean_pressure * new.preconsolidation_pressure:
+        new = yield_state(bracket.theta, start_pressure, start_deviator, growth, wetness, shear, parameters)
+        if is_on_yield_surface(new):
             return new
-        if new.residual > 0.0:
-            theta_above = theta
-        else:
-            theta_below = theta
-        theta = 1.0 / (1.0 / theta - new.residual / new.derivative)
-        if not theta_below < theta < theta_above:
-            theta = 0.5 * (theta_below + theta_above)
-    return YieldState(math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan)
+        bracket = narrowed(bracket, new)
+    return YieldState(math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan)
+
+
+@pointwise
+def first_bracket(wetness: float) -> Bracket:
+    """All of (0, 1], but for theta > ln 2 / a on the wet side, where p > p_c and no stress is on the ellipse."""
+    above = min(1.0, math.log(2.0) / wetness) if wetness > 0.0 else 1.0
+    return Bracket(above, 0.0, above)
+
+
+@pointwise
+def is_on_yield_surface(state: YieldState) -> bool:
+    """Whether F = 0 to the tolerance, relative to p p_c."""
+    return abs(state.yield_function) <= TOLERANCE * state.mean_pressure * state.preconsolidation_pressure
+
+
+@pointwise
+def narrowed(bracket: Bracket, state: YieldState) -> Bracket:
+    """The bracket without the side of theta where the root is not, and Newton's theta or, outside it, the middle."""
+    below, above = bracket.below, bracket.above
+    if state.residual > 0.0:
+        above = bracket.theta
+    else:
+        below = bracket.theta
+    step = -state.residual / state.derivative
+    if state.relaxation_rate > 0.0:
+        step = math.expm1(min(step * state.relaxation_rate, LONGEST_STEP)) / state.relaxation_rate
+    theta = 1.0 / (1.0 / bracket.theta + step)
+    if not below < theta < above:
+        theta = 0.5 * (below + above)
+    return Bracket(theta, below, above)
 
 
 @pointwise
@@ -210,7 +241,7 @@ def yield_state(
     """Residual of F = 0 at theta, and its derivative with respect to the multiplier 1/theta - 1.
 
     With W = p_c/p - 1 and N = 6 G Lambda/M^2 (by which the flow rule shrinks s), F = 0 reads
-    (q_trial/(M p))^2 = (1 + N)^2 W.
+    (q_trial/(M p))^2 = (1 + N)^2 W. The relaxation rate is the derivative of ln(1 + N); 0 asks for a plain step.
     """
     m_squared = parameters.critical_state_ratio * parameters.critical_state_ratio
     kappa = parameters.swelling_index
@@ -240,16 +271,18 @@ def yield_state(
     dn = slope + n * (dlog_mean * dlog_p - log_derivative_of_mean(z, z_factor) * dz)
     dw = -(w + 1.0) * dz
 
-    # Near critical state the square root of both sides is almost linear in the multiplier; at W = 0 it has no slope.
-    if w > 0.1:
-        trial, root = math.sqrt(trial_squared), math.sqrt(w)
-        residual = trial - (1.0 + n) * root
-        derivative = 0.5 * dtrial_squared / max(trial, 1e-300) - dn * root - 0.5 * (1.0 + n) * dw / root
+    relaxed_squared = trial_squared / ((1.0 + n) * (1.0 + n))
+    # The logarithm of both sides is almost linear in ln(1 + N), however large a dry step; at W = 0 it does not exist.
+    if w > 0.2:
+        residual = 0.5 * math.log(max(relaxed_squared, 1e-300) / w)
+        relaxation_rate = dn / (1.0 + n)
+        derivative = 0.5 * (dtrial_squared / max(trial_squared, 1e-300) - dw / w) - relaxation_rate
     else:
         residual = trial_squared - (1.0 + n) * (1.0 + n) * w
+        relaxation_rate = 0.0
         derivative = dtrial_squared - (1.0 + n) * (2.0 * dn * w + (1.0 + n) * dw)
-    yield_function = (trial_squared / ((1.0 + n) * (1.0 + n)) - w) * p * p
-    return YieldState(p, p_c, mean_modulus * p, n, yield_function, residual, derivative)
+    yield_function = (relaxed_squared - w) * p * p
+    return YieldState(p, p_c, mean_modulus * p, n, yield_function, residual, derivative, relaxation_rate)
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

@@ -127,7 +127,7 @@ def test_an_elastic_bar_rings_and_keeps_its_energy(time_constant):
     kinetic, loss = ringing_bar(0.1, time_constant)
     turn = int(np.argmin(kinetic[: len(kinetic) // 2]))
     assert kinetic[turn] < 0.01
-    assert kinetic[turn:].max() > 0.98
+    assert kinetic[turn:].max() > 0.95
     assert abs(loss) < 0.02
 
 

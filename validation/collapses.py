@@ -1,0 +1,46 @@
+"""The paper's column collapse for validation cases: the shipped scenes, and what is measured of a pile."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from materials.registry import get_material
+from mpm_core.observables import PileShape, pile_shape
+from mpm_core.simulation import Simulation
+from validation.case import Effort
+from validation.scenes import shipped_simulation
+
+SCENES = {
+    "mu(I)-LC": "collapse_mu_i_lc",
+    "MCC OCR 1": "collapse_mcc_ocr1",
+    "MCC OCR 4": "collapse_mcc_ocr4",
+}
+CELL_SIZE = {Effort.QUICK: 0.025, Effort.FULL: 0.0125}
+
+
+@dataclass(frozen=True)
+class Pile:
+    """A pile's shape [m] and its energies [J/m] at one time [s]."""
+
+    time: float
+    shape: PileShape
+    kinetic: float
+    released: float
+
+
+def collapse(material: str, cell_size: float, changes: dict[str, Any] | None = None) -> Simulation:
+    """The column of one of `SCENES` on cells of the given size [m], with values by dotted key on top."""
+    changes = {"grid.cell_size": cell_size, "output.fields": [], **(changes or {})}
+    return shipped_simulation(SCENES[material], changes)
+
+
+def published_viscous() -> dict[str, Any]:
+    """Changes that give the mu(I)-LC column the law as published: viscous, explicit, without elasticity in shear."""
+    law = "mu_i_lc_viscous"
+    parameters = get_material(law).parameter_sets["paper"].parameters
+    return {"material": {law: parameters._asdict()}, "body.0.material": law}
+
+
+def pile(simulation: Simulation) -> Pile:
+    """The present pile."""
+    shape = pile_shape(simulation.bodies, simulation.grid.lower[1], simulation.grid.cell_size)
+    return Pile(simulation.time, shape, simulation.ledger.kinetic, -simulation.ledger.potential)
