@@ -1,12 +1,13 @@
 """Compiling a law: the same plain functions, made callable from njit code and cached on disk.
 
-The disk cache of the compiler is keyed on the file of the generated function and on the values that it closes over. A
-compiled law therefore closes over its plain functions and over a hash of every source that they may call: an edited law
-recompiles, an unedited one loads from disk.
+The disk cache of the compiler is keyed on the name and the file of the generated function and on what it closes over. A
+compiled law therefore closes over its plain functions and carries in its name a hash of every source that they call: an
+edited law recompiles, an unedited one loads from disk.
 """
 
 import hashlib
 import inspect
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
@@ -14,12 +15,14 @@ from pathlib import Path
 from typing import Any
 
 from numba import njit
-from numba.core.errors import NumbaError
+from numba.core.errors import NumbaError, UnsupportedBytecodeError
 from numba.extending import register_jitable
 
 from materials.errors import InputError
 from materials.law import Law
 from materials.pointwise import MARKED
+
+_CAUSE = re.compile(r"Untyped global|Unknown attribute|NameError|nsupported|not supported|Cannot unify|Invalid use")
 
 
 @cache
@@ -47,9 +50,20 @@ def named(mark: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     return rename
 
 
+def mark_of_sources(files: Iterable[Path]) -> str:
+    """A mark for `named` that changes with the content of the files.
+
+    The disk cache notices an edit of the file that holds a kernel, but not of what the kernel takes from other files.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(files):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:14]
+
+
 @dataclass(frozen=True)
 class PointwiseLaw:
-    """A law's functions, callable from compiled code, and the hash of all the sources behind them."""
+    """A law's functions, callable from compiled code, and the mark of all the sources behind them."""
 
     name: str
     parameters: type[Any]
@@ -57,12 +71,7 @@ class PointwiseLaw:
     initial_state: Callable[..., Any]
     update: Callable[..., Any]
     sound_speed: Callable[..., Any]
-    source_hash: int
-
-    @property
-    def mark(self) -> str:
-        """What tells functions generated for this law from those for another (see `named`)."""
-        return f"{self.name}_{self.source_hash:x}"
+    mark: str
 
 
 def _source_files(functions: Iterable[Callable[..., Any]]) -> set[Path]:
@@ -92,10 +101,6 @@ def pointwise_law(law: Law) -> PointwiseLaw:
     """The functions of a law, registered with the compiler."""
     _register_helpers()
     functions = (law.initial_state, law.update, law.sound_speed)
-    digest = hashlib.sha256()
-    for path in sorted(_source_files(functions)):
-        digest.update(path.read_bytes())
-    source_hash = int.from_bytes(digest.digest()[:7], "big")
     return PointwiseLaw(
         name=law.name,
         parameters=law.parameters,
@@ -103,7 +108,7 @@ def pointwise_law(law: Law) -> PointwiseLaw:
         initial_state=_register_marked(law.initial_state),
         update=_register_marked(law.update),
         sound_speed=_register_marked(law.sound_speed),
-        source_hash=source_hash,
+        mark=f"{law.name}_{mark_of_sources(_source_files(functions))}",
     )
 
 
@@ -111,25 +116,25 @@ def explained(law: Law, kernel: Callable[..., Any], *arguments: Any) -> Any:
     """Call a kernel, turning a compilation error into one line that names the law."""
     try:
         return kernel(*arguments)
-    except NumbaError as error:
+    except (NumbaError, UnsupportedBytecodeError) as error:
         reason = _reason(error)
         raise InputError(f"law '{law.name}' ({law.source_file.name}) does not compile: {reason}") from error
 
 
-def _reason(error: NumbaError) -> str:
-    """The first line of a compilation error that says more than in which of the compiler's stages it arose."""
+def _reason(error: Exception) -> str:
+    """The line of a compilation error that names the cause, or else its first line."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    return next((line for line in lines if not line.startswith("Failed in")), "unknown reason")
+    causes = [line for line in lines if _CAUSE.search(line)]
+    return (causes or lines or ["unknown reason"])[0]
 
 
 def make_single_step(law: PointwiseLaw) -> Any:
     """One compiled update of one point, for tests that compare it with plain Python."""
-    update, source_hash = law.update, law.source_hash
+    update = law.update
 
     @njit(cache=True)
     @named(law.mark)
     def single_step(stress, strain_rate, density, state, parameters, dt):  # type: ignore[no-untyped-def]
-        assert source_hash
         return update(stress, strain_rate, density, state, parameters, dt)
 
     return single_step

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from numba.extending import register_jitable
 
 from materials.compilation import named
+from mpm_core.sources import CORE_MARK
 
 # Towards a wall the moment goes to zero with the mass of the row inside, and stiffness over mass grows without bound.
 # Below this value, at a twentieth of a cell from the wall, a point is taken to be that far: no explicit step that is
@@ -140,9 +141,10 @@ def make_stencil(basis: Basis) -> Callable[..., tuple[int, float, tuple[float, .
     at_lower_wall, at_upper_wall = basis.lower_wall, basis.upper_wall
 
     @register_jitable
-    @named(basis.name)
+    @named(f"{basis.name}_{CORE_MARK}")
     def stencil(coordinate, lower_ghost, upper_ghost):  # type: ignore[no-untyped-def]
-        first = int(coordinate - offset)
+        # A point exactly on the upper wall belongs to the last cell.
+        first = min(int(coordinate - offset), upper_ghost - width + 1)
         f = coordinate - first
         w = weights(f)
         second_moment = moment(f)

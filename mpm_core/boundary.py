@@ -11,7 +11,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from materials.compilation import named
 from mpm_core.grid import COMPONENTS, GHOSTS, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, Grid, Window
+from mpm_core.sources import CORE_MARK
 
 
 class WallKind(IntEnum):
@@ -62,6 +64,7 @@ def hold_at_wall(grid: Grid, wall: Wall, window: Window) -> float:
 
 
 @njit(cache=True)
+@named(CORE_MARK)
 def _hold(nodes, start, along, count, axis, sign, kind, friction):  # type: ignore[no-untyped-def]
     taken = 0.0
     for k in range(count):
@@ -95,6 +98,7 @@ def join_periodic(nodes: NDArray[np.float64], grid: Grid, axis: int) -> None:
 
 
 @njit(cache=True)
+@named(CORE_MARK)
 def _join(nodes, across, along, rows, count, period):  # type: ignore[no-untyped-def]
     for low in range(rows - period):
         for k in range(count):

@@ -17,6 +17,7 @@ from materials.tensor import deviatoric_stress, pressure
 from mpm_core.body import Body
 from mpm_core.columns import DENSITY, LXX, LYY, SHEAR_STRAIN, SXX, SXY, SYY, SZZ, VX, VY, X, Y
 from mpm_core.output.frame import Field, Frame
+from mpm_core.sources import CORE_MARK
 
 Array = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ def _over_stress(function: Callable[[SymmetricTensor], float]) -> Callable[..., 
     invariant = registered(function)
 
     @njit(cache=True)
-    @named(function.__name__)
+    @named(f"{function.__name__}_{CORE_MARK}")
     def evaluate(points, values):  # type: ignore[no-untyped-def]
         for p in range(points.shape[1]):
             stress = SymmetricTensor(points[SXX, p], points[SYY, p], points[SZZ, p], points[SXY, p], 0.0, 0.0)

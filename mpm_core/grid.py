@@ -15,7 +15,8 @@ COMPONENTS = 6
 
 # Nodes beyond each side of the domain, enough for the widest stencil of a point that touches a wall.
 GHOSTS = 2
-NO_NODE = -1
+# Ghosts that no stencil reaches, for axes without walls.
+NO_GHOSTS = (-1, 2**31 - 1)
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Grid:
         self.shape = (cells[0] + 1 + 2 * GHOSTS, cells[1] + 1 + 2 * GHOSTS)
         self.nodes: NDArray[np.float64] = np.zeros(self.shape[0] * self.shape[1] * COMPONENTS)
         # The nodes just beyond the walls, whose velocity is tied to the inside; no node where the axis is periodic.
-        walls = [(NO_NODE, NO_NODE) if axis in periodic_axes else self._ghosts(axis) for axis in (0, 1)]
+        walls = [NO_GHOSTS if axis in periodic_axes else self._ghosts(axis) for axis in (0, 1)]
         self.ghosts = (*walls[0], *walls[1])
         self.origin = (lower[0] - GHOSTS * cell_size, lower[1] - GHOSTS * cell_size)
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit, prange
 
+from materials.compilation import named
 from mpm_core.grid import (
     COMPONENTS,
     FX,
@@ -19,6 +20,7 @@ from mpm_core.grid import (
     Grid,
     Window,
 )
+from mpm_core.sources import CORE_MARK
 
 
 def clear(grid: Grid, window: Window) -> None:
@@ -33,6 +35,7 @@ def update_velocities(grid: Grid, window: Window, gravity: tuple[float, float], 
 
 
 @njit(parallel=True, cache=True)
+@named(CORE_MARK)
 def _clear(nodes, nodes_y, first_x, last_x, first_y, last_y):  # type: ignore[no-untyped-def]
     for i in prange(first_x, last_x + 1):
         start = (i * nodes_y + first_y) * COMPONENTS
@@ -40,6 +43,7 @@ def _clear(nodes, nodes_y, first_x, last_x, first_y, last_y):  # type: ignore[no
 
 
 @njit(parallel=True, error_model="numpy", cache=True)
+@named(CORE_MARK)
 def _update(  # type: ignore[no-untyped-def]
     nodes, nodes_y, first_x, last_x, first_y, last_y, gravity_impulse_x, gravity_impulse_y, dt
 ):

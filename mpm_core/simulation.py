@@ -168,6 +168,8 @@ class Simulation:
             self._fail(body, int(np.argmin(finite)), "the stress or another quantity is not finite")
         increments = dt * np.abs(body.points[LXX] + body.points[LYY])
         worst = int(np.argmax(increments))
+        if increments[worst] < LARGEST_INCREMENT:
+            self._fail(body, worst, "the law's sound speed is not finite")
         self._fail(body, worst, f"its volume changed by {increments[worst]:.0%} in one step of {dt:.3g} s")
 
     def _fail(self, body: Body, point: int, reason: str) -> None:

@@ -8,8 +8,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from materials.compilation import named
 from mpm_core.columns import X, Y
 from mpm_core.grid import Window
+from mpm_core.sources import CORE_MARK
 
 STRIPE = 8
 LONGEST_DRIFT = 0.9
@@ -25,6 +27,7 @@ def sort_by_stencil(
 
 
 @njit(cache=True)
+@named(CORE_MARK)
 def _counting_sort(  # type: ignore[no-untyped-def]
     points, origin_x, origin_y, cell_size, offset, first_x, first_y, columns, rows
 ):

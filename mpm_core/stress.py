@@ -36,7 +36,8 @@ from mpm_core.columns import (
     VX,
     VY,
 )
-from mpm_core.transfer import BLOCK, FAST
+from mpm_core.sources import CORE_MARK
+from mpm_core.transfer import BLOCK
 
 # The shear rate [1/s] below which material counts as at rest and exchanges no volume.
 QUIET_RATE = 0.1
@@ -128,9 +129,9 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
     Reports per block of points: the largest signal speed c + |v| [m/s], the work of the stress on the strain [J/m], and
     the largest volumetric strain increment of the step. Where anything is not finite, the last one is NaN.
     """
-    update, sound_speed, source_hash = law.update, law.sound_speed, law.source_hash
+    update, sound_speed = law.update, law.sound_speed
     parameter_class = law.parameters
-    mark = f"{law.mark}_{keeps_shear_strain:d}"
+    mark = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}"
     load, store = make_state_access(law.state, mark)
 
     @register_jitable
@@ -165,10 +166,9 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
             largest = max(largest, ordered_bits(abs(2.0 * half_increment + not_finite)))
         return fastest, work, largest
 
-    @njit(parallel=True, fastmath=FAST, error_model="numpy", cache=True)
+    @njit(parallel=True, error_model="numpy", cache=True)
     @named(mark)
     def stress_pass(points, point_mass, parameters, dt, exchange, reports):  # type: ignore[no-untyped-def]
-        assert source_hash
         for block in prange(reports.shape[0]):
             rows = points[:, block * BLOCK : (block + 1) * BLOCK]
             fastest, work, largest = update_block(

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from mpm_core.basis import BASES, SMALLEST_MOMENT_AT_WALL, make_stencil
+from mpm_core.grid import NO_GHOSTS
 
 CELLS = 6
 FIRST_NODE, LAST_NODE = 2, 2 + CELLS
 WALLS = (FIRST_NODE - 1, LAST_NODE + 1)
-NO_WALLS = (-1, -1)
-INSIDE = np.linspace(FIRST_NODE, LAST_NODE, 97)[:-1]
+NO_WALLS = NO_GHOSTS
+INSIDE = np.linspace(FIRST_NODE, LAST_NODE, 97)
 
 
 def moments(name, coordinate, ghosts):

@@ -101,13 +101,13 @@ def curve(label: str, x: object, y: object, role: str = "measured") -> Curve:
 
 @dataclass(frozen=True)
 class Figure:
-    """One plot of the report."""
+    """One plot of the report; `logarithmic` names the axes that are: "", "y" or "xy"."""
 
     title: str
     x_label: str
     y_label: str
     curves: tuple[Curve, ...]
-    logarithmic: bool = False
+    logarithmic: str = ""
 
 
 @dataclass(frozen=True)

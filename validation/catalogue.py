@@ -20,6 +20,7 @@ NAMES = (
     "two_discs",
     "bagnold_incline",
     "mirror_symmetry",
+    "shifted_column",
     "rest",
     "time_step_independence",
 )

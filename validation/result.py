@@ -71,8 +71,8 @@ class CaseResult:
 
 
 def share_of_band(found: Measurement) -> float:
-    """Error over band; infinite where there is no error to speak of because it is not a number."""
-    return math.inf if math.isnan(found.error) else found.error / found.band
+    """Error over band; infinite where the error is not a number or the band has no width."""
+    return found.error / found.band if found.band > 0.0 and not math.isnan(found.error) else math.inf
 
 
 def run_case(case: Case, effort: Effort) -> CaseResult:

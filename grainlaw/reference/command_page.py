@@ -38,7 +38,7 @@ def _is_option(parameter: Any) -> bool:
 def _shown(parameter: Any) -> str:
     value = parameter.metavar or parameter.name.upper()
     if not _is_option(parameter):
-        return value if parameter.required else f"[{value}]"
+        return value if parameter.required or value.startswith("[") else f"[{value}]"
     return ", ".join(parameter.opts) + ("" if parameter.is_flag else f" {value}")
 
 

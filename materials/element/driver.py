@@ -5,7 +5,6 @@ turn with the material. Strain is the time integral of D (logarithmic); density 
 rho_{n+1} = rho_n exp(-tr D dt), that is d(ln v) = tr D dt.
 """
 
-import hashlib
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,8 +14,8 @@ import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
-from materials.compilation import PointwiseLaw, explained, named, pointwise_law
-from materials.element import search as search_module
+from materials.compilation import PointwiseLaw, explained, mark_of_sources, named, pointwise_law
+from materials.element import search
 from materials.element.path import LoadingPath
 from materials.element.point import Point
 from materials.element.search import narrowed, search_from
@@ -30,6 +29,8 @@ MAXIMUM_ITERATIONS = 200
 # Share of the prescribed rate by which x first moves while its slope is unknown.
 FIRST_REACH = 0.1
 
+SEARCH_MARK = mark_of_sources([Path(search.__file__)])
+
 register_jitable(search_from)
 register_jitable(narrowed)
 
@@ -40,15 +41,11 @@ def make_advance(law: PointwiseLaw) -> Any:
     advance(point, parameters, dt, rates, direction, free, held, target) -> (point, steps done); it stops
     before the first step whose control does not converge.
     """
-    update, source_hash = law.update, law.source_hash
-    # The search lives in another file than the loop, whose cached code must not outlive a change there.
-    search_hash = int.from_bytes(hashlib.sha256(Path(search_module.__file__).read_bytes()).digest()[:7], "big")
+    update = law.update
 
     @njit(cache=True)
-    @named(law.mark)
+    @named(f"{law.mark}_{SEARCH_MARK}")
     def advance(point, parameters, dt, rates, direction, free, held, target):  # type: ignore[no-untyped-def]
-        assert source_hash
-        assert search_hash
         is_controlled = contraction(free, free) > 0.0
         tolerance = CONTROL_TOLERANCE * abs(target)
         for step in range(rates.size):

@@ -41,7 +41,7 @@ def measure(effort: Effort) -> Evidence:
     """The paper's three materials."""
     results = {material: asymmetry(material, effort) for material in SCENES}
     curves = [curve(name, [t for t, _ in found], [max(a, 1e-17) for _, a in found]) for name, found in results.items()]
-    figure = Figure("Asymmetry", "time [s]", "distance over height [1]", tuple(curves), logarithmic=True)
+    figure = Figure("Asymmetry", "time [s]", "distance over height [1]", tuple(curves), logarithmic="y")
     return Evidence(tuple(largest(name, found) for name, found in results.items()), figures=(figure,))
 
 

@@ -36,9 +36,7 @@ def measure(effort: Effort) -> Evidence:
         curve(material, [p.time for p in found], [p.kinetic / found[-1].released for p in found])
         for material, found in results.items()
     ]
-    figure = Figure(
-        "Kinetic energy over the energy released", "time [s]", "energy [1]", tuple(curves), logarithmic=True
-    )
+    figure = Figure("Kinetic energy over the energy released", "time [s]", "energy [1]", tuple(curves), logarithmic="y")
     found = [measurement for material, piles in results.items() for measurement in measurements(material, piles)]
     return Evidence(tuple(found), figures=(figure,))
 

@@ -7,6 +7,7 @@ from validation.scenes import advance
 BAND = 2e-2
 END = 1.5
 SAFETY = {Effort.QUICK: (0.4, 0.1), Effort.FULL: (0.4, 0.1, 0.025)}
+MATERIALS = {Effort.QUICK: ("mu(I)-LC", "MCC OCR 1"), Effort.FULL: tuple(SCENES)}
 OBSERVABLES = ("center_of_mass_height", "runout", "height")
 
 
@@ -38,8 +39,8 @@ def measurements(material: str, piles: dict[float, Pile]) -> tuple[Measurement, 
 
 
 def measure(effort: Effort) -> Evidence:
-    """The paper's three materials."""
-    results = {material: final_piles(material, effort) for material in SCENES}
+    """The paper's three materials; without OCR 4 in quick."""
+    results = {material: final_piles(material, effort) for material in MATERIALS[effort]}
     curves = [
         curve(material, list(piles), [found.shape.center_of_mass_height for found in piles.values()])
         for material, piles in results.items()

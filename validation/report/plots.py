@@ -20,8 +20,9 @@ def figure_image(figure: Figure) -> str:
     colors = iter(MEASURED_COLORS * 3)
     for curve in figure.curves:
         _draw(axes, curve, "#333333" if curve.role == "reference" else next(colors))
-    if figure.logarithmic:
+    if "x" in figure.logarithmic:
         axes.set_xscale("log")
+    if "y" in figure.logarithmic:
         axes.set_yscale("log")
     axes.legend(frameon=False, fontsize=8)
     return _data_uri(canvas)

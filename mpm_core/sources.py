@@ -1,0 +1,8 @@
+"""The mark of the core's compiled code: it changes whenever a file that kernels are made from changes."""
+
+from pathlib import Path
+
+from materials.compilation import mark_of_sources
+
+KERNEL_FILES = ("basis", "boundary", "columns", "fields", "grid", "momentum", "sorting", "stress", "transfer")
+CORE_MARK = mark_of_sources(Path(__file__).with_name(f"{name}.py") for name in KERNEL_FILES)

@@ -1,0 +1,67 @@
+"""`grainlaw validate` from the command line."""
+
+import json
+
+import pytest
+from scenes_for_tests import call_command_line
+
+from validation import catalogue
+from validation.case import Effort
+from validation.result import run_case
+
+# The cases that run one material point, fast enough for every test run.
+POINT_CASES = (
+    "simple_shear",
+    "mcc_triaxial_drained",
+    "mcc_triaxial_undrained",
+    "mcc_one_dimensional_compression",
+    "opening_and_closing",
+)
+
+
+@pytest.mark.parametrize("name", [*POINT_CASES, "rigid_rotation", "elastic_bar_vibration", "sliding_block"])
+def test_case_passes_and_its_control_fails(name):
+    result = run_case(catalogue.get_case(name), Effort.QUICK)
+    assert result.reasons == ()
+    assert result.control_fails
+
+
+@pytest.mark.parametrize("name", catalogue.NAMES)
+def test_every_case_declares_what_it_proves(name):
+    case = catalogue.get_case(name)
+    assert case.name == name
+    assert all((case.title, case.proves, case.reference, case.norm, case.mistake))
+
+
+def test_two_cases_with_a_report(monkeypatch, tmp_path, capsys):
+    arguments = ("validate", "simple_shear", "opening_and_closing", "--quick", "--out", tmp_path / "report")
+    assert call_command_line(monkeypatch, *arguments) == 0
+    assert "2 of 2 cases pass" in capsys.readouterr().out
+    results = json.loads((tmp_path / "report" / "results.json").read_text(encoding="utf-8"))
+    assert [case["name"] for case in results["cases"]] == ["simple_shear", "opening_and_closing"]
+    assert results["passed"] is True
+    assert {path.name for path in (tmp_path / "report").iterdir()} == {"results.json", "junit.xml", "report.html"}
+
+
+def test_a_failing_case_is_exit_code_1(monkeypatch, capsys):
+    monkeypatch.setattr("validation.cases.opening_and_closing.BAND", 0.0)
+    assert call_command_line(monkeypatch, "validate", "opening_and_closing", "--quick") == 1
+    assert "0 of 1 cases pass" in capsys.readouterr().out
+
+
+def test_an_unknown_case_is_one_line_with_the_nearest_name(monkeypatch, capsys):
+    assert call_command_line(monkeypatch, "validate", "simple_shaer") == 2
+    assert capsys.readouterr().err == "error: unknown validation case 'simple_shaer'; did you mean 'simple_shear'?\n"
+
+
+def test_a_folder_that_cannot_be_made_is_refused_before_anything_runs(monkeypatch, tmp_path, capsys):
+    file = tmp_path / "file"
+    file.write_text("")
+    assert call_command_line(monkeypatch, "validate", "simple_shear", "--out", file) == 2
+    assert "simple_shear ..." not in capsys.readouterr().err
+
+
+def test_list_names_every_case(monkeypatch, capsys):
+    assert call_command_line(monkeypatch, "validate", "--list") == 0
+    printed = capsys.readouterr().out
+    assert all(name in printed for name in catalogue.NAMES)

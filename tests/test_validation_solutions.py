@@ -1,0 +1,54 @@
+"""The closed solutions that cases compare with, against known values and one another."""
+
+import math
+
+import numpy as np
+import pytest
+
+from validation.cam_clay_solutions import EXAMPLE
+from validation.cases.bagnold_incline import HEIGHT, exact_velocity, inertial_number
+from validation.cases.elastic_bar_vibration import frequency
+from validation.cases.rigid_rotation import START, turned_stress
+from validation.cases.sliding_block import exact_distance
+
+
+def test_golden_states_of_the_worked_example():
+    assert EXAMPLE.drained_state(0.1) == pytest.approx((272.288e3, 0.07547), rel=1e-4)
+    assert EXAMPLE.drained_failure() == pytest.approx(400e3)
+    assert EXAMPLE.undrained_state(0.02) == pytest.approx((137.620e3, 127.454e3), rel=1e-5)
+    assert EXAMPLE.undrained_pressure(1.2) == pytest.approx(114.870e3, rel=1e-5)
+    assert EXAMPLE.earth_pressure_at_rest() == pytest.approx(0.64763, rel=1e-5)
+
+
+def test_one_dimensional_path_ends_at_rest():
+    p, q = EXAMPLE.one_dimensional_state(0.6)
+    assert q / p == pytest.approx(EXAMPLE.stress_ratio_at_rest(), rel=1e-8)
+
+
+def test_undrained_path_starts_elastically():
+    """Without plastic shear at eta = 0 the first slope is 3 G."""
+    _, q = EXAMPLE.undrained_state(1e-8)
+    shear_modulus = EXAMPLE.shear_ratio * EXAMPLE.initial_pressure / EXAMPLE.swelling_index
+    assert q == pytest.approx(3.0 * shear_modulus * 1e-8, rel=1e-3)
+
+
+def test_bagnold_flow_of_glass_beads():
+    assert inertial_number() == pytest.approx(0.0891, rel=1e-3)
+    assert exact_velocity(HEIGHT) == pytest.approx(0.7793, rel=1e-4)
+    assert exact_velocity(0.0) == 0.0
+
+
+def test_sliding_block_after_half_a_second():
+    assert exact_distance(0.5) == pytest.approx(0.29454, rel=1e-4)
+
+
+def test_frequency_of_a_sampled_cosine():
+    times = np.linspace(0.0, 10.0, 401)
+    assert frequency(times, np.cos(2.0 * math.pi * 0.93 * times)) == pytest.approx(0.93, rel=1e-4)
+
+
+def test_a_turned_stress_keeps_its_invariants():
+    turned = turned_stress(0.7)
+    values, start = list(turned.values()), list(START.values())
+    assert sum(values[:3]) == pytest.approx(sum(start[:3]))
+    assert values[0] * values[1] - values[3] ** 2 == pytest.approx(start[0] * start[1] - start[3] ** 2)
