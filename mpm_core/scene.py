@@ -114,7 +114,8 @@ class TransferSection(Section):
     time_constant: float = Field(
         default=0.01,
         gt=0,
-        description="decay time of velocities (affine_flip only) and of volumes below the grid's resolution [s]",
+        description="decay time of velocities below the grid's resolution (affine_flip only), and of the opening of "
+        "points without stress [s]",
     )
 
 

@@ -4,7 +4,6 @@ import math
 import time
 from dataclasses import dataclass, replace
 
-import numba
 import numpy as np
 
 from materials import SimulationError
@@ -19,6 +18,7 @@ from mpm_core.initial import build_bodies
 from mpm_core.scene import Scene
 from mpm_core.sorting import LONGEST_DRIFT
 from mpm_core.stress import INTERNAL_WORK, MAX_INCREMENT, MAX_SIGNAL_SPEED
+from mpm_core.threads import use_threads
 from mpm_core.transfer import (
     HIGHEST_X,
     HIGHEST_Y,
@@ -59,7 +59,7 @@ class Simulation:
     def __init__(self, scene: Scene, threads: int = 1) -> None:
         self.scene = scene
         self.threads = threads
-        numba.set_num_threads(threads)
+        use_threads(threads)
         self.basis = BASES[scene.transfer.basis]
         self.periodic_axes = _periodic_axes(scene)
         self.grid = Grid(scene.grid.lower, scene.grid.cells, scene.grid.cell_size, self.periodic_axes)

@@ -3,11 +3,11 @@
 For each point: rotate the stress with the material (exact rotation by the increment of spin; Hughes & Winget 1980),
 bring the density to the end of the step (midpoint rule for d ln rho = -tr D dt), call the law.
 
-Volumes below the grid's resolution. In a flow each point sums up its own error of volume, which no force of the grid
-can see: after a collapse half of the points of a stiff law would carry no stress, the others twice the pressure. While
-the material deforms, a point also takes on a volumetric strain that brings its density towards that of the material
-around it, ln(rho_around/rho), over the time constant of the transfer. At rest the exchange stops, as it must not pump:
-its rate is multiplied by gamma_dot/(gamma_dot + QUIET_RATE).
+Points without contact. In a flow each point sums up its own error of volume, which no force of the grid can see: after
+a collapse more than half of the points of a stiff law would have opened for good, while the others carry twice the
+pressure. While the material deforms, a point without stress therefore closes towards the density of the material around
+it, by the strain ln(rho_around/rho) over the time constant of the transfer. At rest it must not pump: the rate is
+multiplied by gamma_dot/(gamma_dot + QUIET_RATE). Points with stress, elastic and cohesive material are not touched.
 """
 
 from collections.abc import Callable
@@ -39,7 +39,7 @@ from mpm_core.columns import (
 from mpm_core.sources import CORE_MARK
 from mpm_core.transfer import BLOCK
 
-# The shear rate [1/s] below which material counts as at rest and exchanges no volume.
+# The shear rate [1/s] below which material counts as at rest.
 QUIET_RATE = 0.1
 
 # What `stress_pass` reports for each block of points.
@@ -106,11 +106,11 @@ def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
-def exchanged_strain(density, around, shear_rate, exchange):  # type: ignore[no-untyped-def]
+def closing_strain(density, around, shear_rate, exchange):  # type: ignore[no-untyped-def]
     """The compressive strain of one step towards the density around; `exchange` is dt over the time constant."""
     share = exchange * shear_rate / (shear_rate + QUIET_RATE)
     # ln(around/density) to third order, bounded by 2 for points that have lost contact
-    difference = 2.0 * (around - density) / (around + density)
+    difference = max(0.0, 2.0 * (around - density) / (around + density))
     return difference * share / (1.0 + share)
 
 
@@ -146,7 +146,8 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
             motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
             shear_rate = shear_strain_rate(motion)
             xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
-            closing = exchanged_strain(density[p], around[p], shear_rate, exchange)
+            has_contact = sxx[p] != 0.0 or syy[p] != 0.0
+            closing = 0.0 if has_contact else closing_strain(density[p], around[p], shear_rate, exchange)
             strain_rate = added(motion, isotropic(-closing / (3.0 * dt)))
             half_increment = 0.5 * (dt * trace(motion) - closing)
             new_density = density[p] * (1.0 - half_increment) / (1.0 + half_increment)

@@ -2,6 +2,10 @@
 
 import os
 
+# Idle threads of OpenMP spin by default, which on a busy machine takes the time of those that work. Spin briefly, then
+# sleep. It has to be set before the first parallel kernel loads the library.
+os.environ.setdefault("GOMP_SPINCOUNT", "1000")
+
 import numba
 
 from materials import InputError
@@ -15,3 +19,8 @@ def usable_threads(requested: int | None) -> int:
     if requested > available:
         raise InputError(f"--threads {requested}: this machine has {available}")
     return requested
+
+
+def use_threads(count: int) -> None:
+    """Let parallel kernels run on `count` threads."""
+    numba.set_num_threads(count)

@@ -9,7 +9,7 @@ top of it the point keeps what the grid did not resolve of its velocity, v_p - s
 so that tau = 0 is APIC, tau = infinity affine FLIP, and the loss per second does not depend on the step.
 
 The grid also returns to each point the density of the material around it, the ratio of mass and volume at the nodes,
-towards which `stress` lets its own density relax.
+towards which `stress` closes points that have lost contact.
 
 Points come in stripes of grid columns (`sorting`). Stripes of even number are scattered first, then those of odd
 number: within each half no two stripes share a node, so that the sums come out the same for any number of threads.
