@@ -95,8 +95,11 @@ def make_state_access(state_class: type[Any], mark: str) -> tuple[Callable[..., 
 
 @register_jitable
 def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
-    """In-plane stress components after a rotation by `angle` (Cayley's form: exactly orthogonal)."""
-    t = 0.5 * angle
+    """In-plane stress components after a rotation by `angle`, in Cayley's form, which is exactly orthogonal.
+
+    The angle of that form is 2 atan(t); t = tan(angle/2) to third order.
+    """
+    t = 0.5 * angle * (1.0 + angle * angle / 12.0)
     cosine = (1.0 - t * t) / (1.0 + t * t)
     sine = 2.0 * t / (1.0 + t * t)
     cosine_2, sine_2 = cosine * cosine - sine * sine, 2.0 * sine * cosine

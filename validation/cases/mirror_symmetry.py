@@ -11,7 +11,7 @@ from validation.scenes import advance, in_order_of_generation
 
 BAND = 1e-9
 AXIS, SIZE, COLUMN = 1.6, 0.9, (0.3, 0.9)
-END = {Effort.QUICK: 0.5, Effort.FULL: 1.5}
+END = {Effort.QUICK: 0.4, Effort.FULL: 1.5}
 TILTED = {"gravity": [1e-6, -9.8]}
 
 

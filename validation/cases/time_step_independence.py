@@ -6,7 +6,7 @@ from validation.scenes import advance
 
 BAND = 2e-2
 END = 1.5
-SAFETY = {Effort.QUICK: (0.4, 0.1), Effort.FULL: (0.4, 0.1, 0.025)}
+SAFETY = {Effort.QUICK: (0.4, 0.2), Effort.FULL: (0.4, 0.1, 0.025)}
 MATERIALS = {Effort.QUICK: ("mu(I)-LC", "MCC OCR 1"), Effort.FULL: tuple(SCENES)}
 OBSERVABLES = ("center_of_mass_height", "runout", "height")
 
