@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from materials.declarations import DeclarationError, Parameter, StateVariable, declared_fields
+from materials.declarations import DeclarationError, Parameter, StateVariable, checked_parameters, declared_fields
+from materials.errors import InputError
 from materials.tensor import SymmetricTensor, isotropic
 
 HOOK_VERSION = 1
@@ -21,6 +22,10 @@ class ParameterSet:
     parameters: Any
     source: str
     density: Callable[[float, Any], float]
+
+
+def _no_contradiction(parameters: Any) -> str:
+    return ""
 
 
 @dataclass(frozen=True)
@@ -37,6 +42,7 @@ class Law:
                     strain rate D [1/s], ending at `density`; the caller has already rotated the stress
     sound_speed     (stress, density, state, parameters) -> fastest wave speed [m/s]
     parameter_sets  named parameter sets, the first of which element tests take by default
+    contradiction   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
     hook_version    version of this interface that the law was written for
 
     The three functions take and return scalars and NamedTuples, call only `math` and functions marked with
@@ -51,7 +57,16 @@ class Law:
     update: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any]]
     sound_speed: Callable[[SymmetricTensor, float, Any, Any], float]
     parameter_sets: Mapping[str, ParameterSet] = field(default_factory=dict)
+    contradiction: Callable[[Any], str] = _no_contradiction
     hook_version: int = HOOK_VERSION
+
+    def checked(self, values: dict[str, Any], where: str) -> Any:
+        """Parameters of this law from values by name; `where` names their place in messages. Raises InputError."""
+        parameters = checked_parameters(where, self.parameters, values)
+        reason = self.contradiction(parameters)
+        if reason:
+            raise InputError(f"{where}: {reason}")
+        return parameters
 
     @property
     def parameter_declarations(self) -> dict[str, Parameter]:
@@ -96,6 +111,8 @@ def _check_one_step(law: Law, name: str, parameter_set: ParameterSet) -> None:
     for parameter, declaration in law.parameter_declarations.items():
         if not declaration.interval.contains(getattr(parameters, parameter)):
             raise DeclarationError(f"parameter set '{name}': {parameter} is outside {declaration.bounds}")
+    if reason := law.contradiction(parameters):
+        raise DeclarationError(f"parameter set '{name}': {reason}")
     try:
         density = parameter_set.density(1000.0, parameters)
         stress = isotropic(-1000.0)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 import tomli_w
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, field_validator, model_validator
 
-from materials import InputError, checked_parameters, get_material
+from materials import InputError, get_material
 from materials.errors import nearest_name
 from materials.law import Law
 from mpm_core.scene_errors import described
@@ -212,7 +212,7 @@ class Scene(Section):
     def parameters(self, material: str) -> Any:
         """The parameters of a [material.NAME] table as the law's NamedTuple. Raises InputError for bad values."""
         values = {name: value for name, value in self.material[material].items() if name != "law"}
-        return checked_parameters(f"material.{material}", self.law(material).parameters, values)
+        return self.law(material).checked(values, f"material.{material}")
 
     @classmethod
     def from_dict(cls, content: dict[str, Any], source: str = "scene") -> "Scene":

@@ -291,6 +291,16 @@ def sound_speed(stress: SymmetricTensor, density: float, state: State, parameter
     return longitudinal_wave_speed(bulk_modulus, shear_modulus(bulk_modulus, parameters.poisson_ratio), density)
 
 
+def contradiction(parameters: Parameters) -> str:
+    """Compression has to be softer than swelling."""
+    if parameters.compression_index > parameters.swelling_index:
+        return ""
+    return (
+        f"compression_index = {parameters.compression_index:g} must be larger than "
+        f"swelling_index = {parameters.swelling_index:g}"
+    )
+
+
 def density_on_compression_line(mean_pressure: float, parameters: Parameters) -> float:
     """Bulk density [kg/m3] at rest, from the isotropic compression line ln v = 0.021 - lambda ln(p/1 Pa) and swelling.
 
@@ -319,6 +329,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    contradiction=contradiction,
     parameter_sets={
         "paper": ParameterSet(PAPER, "Table 1, OCR = 1", density_on_compression_line),
         "paper_ocr4": ParameterSet(

@@ -97,6 +97,16 @@ def sound_speed(stress: SymmetricTensor, density: float, state: State, parameter
     return longitudinal_wave_speed(parameters.bulk_modulus, 0.0, density)
 
 
+def contradiction(parameters: Parameters) -> str:
+    """Friction may not fall with the shear rate: slow and fast flow would then be possible at one stress."""
+    if parameters.dynamic_friction >= parameters.static_friction:
+        return ""
+    return (
+        f"dynamic_friction = {parameters.dynamic_friction:g} must not be smaller than "
+        f"static_friction = {parameters.static_friction:g}"
+    )
+
+
 def density_of_table_1(mean_pressure: float, parameters: Parameters) -> float:
     """Bulk density [kg/m3] with Table 1's phi_ref = 1.317 (see `mu_i_lc`)."""
     return 1.317 * parameters.grain_density * (1.0 + mean_pressure / parameters.bulk_modulus)
@@ -110,6 +120,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    contradiction=contradiction,
     parameter_sets={
         "paper": ParameterSet(
             Parameters(

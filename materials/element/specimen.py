@@ -51,7 +51,7 @@ def prepared(
     if of_law:
         changes = " with " + ", ".join(f"{name} = {value:g}" for name, value in of_law.items())
         label, source = label + changes, source + changes
-    specimen = Specimen(law, checked_parameters(law.name, law.parameters, {**values, **of_law}), label, source)
+    specimen = Specimen(law, law.checked({**values, **of_law}, law.name), label, source)
     shared = {name: value for name, value in specimen.parameters._asdict().items() if name in test.settings._fields}
     return specimen, checked_parameters(test.name, test.settings, {**of_test, **shared})
 
