@@ -4,5 +4,16 @@ from pathlib import Path
 
 from materials.compilation import mark_of_sources
 
-KERNEL_FILES = ("basis", "boundary", "columns", "fields", "grid", "momentum", "sorting", "stress", "transfer")
+KERNEL_FILES = (
+    "arithmetic",
+    "basis",
+    "boundary",
+    "columns",
+    "fields",
+    "grid",
+    "momentum",
+    "sorting",
+    "stress",
+    "transfer",
+)
 CORE_MARK = mark_of_sources(Path(__file__).with_name(f"{name}.py") for name in KERNEL_FILES)

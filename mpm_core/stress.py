@@ -100,8 +100,8 @@ def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
     The angle of that form is 2 atan(t); t = tan(angle/2) to third order.
     """
     t = 0.5 * angle * (1.0 + angle * angle / 12.0)
-    cosine = (1.0 - t * t) / (1.0 + t * t)
-    sine = 2.0 * t / (1.0 + t * t)
+    inverse = 1.0 / (1.0 + t * t)
+    cosine, sine = (1.0 - t * t) * inverse, 2.0 * t * inverse
     cosine_2, sine_2 = cosine * cosine - sine * sine, 2.0 * sine * cosine
     mean, half = 0.5 * (sxx + syy), 0.5 * (sxx - syy)
     turned = half * cosine_2 - sxy * sine_2

@@ -14,8 +14,8 @@ towards which `stress` closes points that have lost contact.
 Points come in stripes of grid columns (`sorting`). Stripes of even number are scattered first, then those of odd
 number: within each half no two stripes share a node, so that the sums come out the same for any number of threads.
 
-All arithmetic is strict. Licence to contract or reorder it would save a fifth of the time, but code just compiled and
-the same code loaded from the disk cache then differ in the last bit, and a resumed run would not repeat the bits.
+All arithmetic is strict. Licence to contract or reorder it would save time, but code just compiled and the same code
+loaded from the disk cache then differ in the last bit, and a resumed run would not repeat the bits.
 """
 
 from collections.abc import Callable
@@ -25,6 +25,7 @@ import numpy as np
 from numba import njit, prange
 
 from materials.compilation import named
+from mpm_core.arithmetic import deposit, fma
 from mpm_core.basis import Basis, make_stencil
 from mpm_core.columns import DENSITY, DENSITY_AROUND, LXX, LXY, LYX, LYY, SXX, SXY, SYY, VX, VY, X, Y
 from mpm_core.grid import COMPONENTS, FX, FY, MASS, NEW_VX, NEW_VY, NODE_DENSITY, OLD_VX, OLD_VY, PX, PY, VOLUME
@@ -77,12 +78,12 @@ def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
                             dy = b - fy
                             w = wx[a] * wy[b]
                             node = row + np.uint64(b * COMPONENTS)
-                            nodes[node + np.uint64(MASS)] += w * point_mass
-                            nodes[node + np.uint64(PX)] += w * (px + axy * dy)
-                            nodes[node + np.uint64(PY)] += w * (py + ayy * dy)
-                            nodes[node + np.uint64(VOLUME)] += w * volume
-                            nodes[node + np.uint64(FX)] -= w * (qx + fxy * dy)
-                            nodes[node + np.uint64(FY)] -= w * (qy + fyy * dy)
+                            deposit(nodes, node + np.uint64(MASS), w, point_mass)
+                            deposit(nodes, node + np.uint64(PX), w, fma(axy, dy, px))
+                            deposit(nodes, node + np.uint64(PY), w, fma(ayy, dy, py))
+                            deposit(nodes, node + np.uint64(VOLUME), w, volume)
+                            deposit(nodes, node + np.uint64(FX), -w, fma(fxy, dy, qx))
+                            deposit(nodes, node + np.uint64(FY), -w, fma(fyy, dy, qy))
 
     return points_to_grid
 
@@ -126,13 +127,13 @@ def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
                         uy = w * nodes[node + np.uint64(NEW_VY)]
                         new_vx += ux
                         new_vy += uy
-                        gxx += ux * dx
-                        gxy += ux * dy
-                        gyx += uy * dx
-                        gyy += uy * dy
-                        around += w * nodes[node + np.uint64(NODE_DENSITY)]
-                        old_vx += w * nodes[node + np.uint64(OLD_VX)]
-                        old_vy += w * nodes[node + np.uint64(OLD_VY)]
+                        gxx = fma(ux, dx, gxx)
+                        gxy = fma(ux, dy, gxy)
+                        gyx = fma(uy, dx, gyx)
+                        gyy = fma(uy, dy, gyy)
+                        around = fma(w, nodes[node + np.uint64(NODE_DENSITY)], around)
+                        old_vx = fma(w, nodes[node + np.uint64(OLD_VX)], old_vx)
+                        old_vy = fma(w, nodes[node + np.uint64(OLD_VY)], old_vy)
                 scale_x = inverse_size / moment_x
                 scale_y = inverse_size / moment_y
                 lxx[p], lxy[p] = gxx * scale_x, gxy * scale_y

@@ -83,8 +83,8 @@ def update(
     dt: float,
 ) -> tuple[SymmetricTensor, State]:
     """Linear compression, elastic predictor, return to tau = mu(I) p."""
-    solid_fraction = density / parameters.grain_density
-    new_pressure = max(0.0, parameters.bulk_modulus * (solid_fraction / state.reference_solid_fraction - 1.0))
+    reference_density = parameters.grain_density * state.reference_solid_fraction
+    new_pressure = max(0.0, parameters.bulk_modulus * (density / reference_density - 1.0))
 
     stiffness = 2.0 * shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio) * dt
     trial = added(deviator(stress), scaled(deviator(strain_rate), stiffness))
