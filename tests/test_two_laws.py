@@ -1,0 +1,68 @@
+"""Two laws in one scene and in one process: neither may take the other's code, columns or parameters.
+
+The compiled code of two laws differs in what it closes over alone; loaded from the disk cache it was once mixed up.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scenes_for_tests import CAM_CLAY, COLUMN, MU_I_LC
+
+from mpm_core import Scene, Simulation
+
+STEPS, DT = 60, 2e-4
+LAWS = {"mu_i_lc": MU_I_LC, "modified_cam_clay": CAM_CLAY}
+STRESS = {"kind": "geostatic", "out_of_plane_ratio": 0.3}
+
+
+def scene(*laws):
+    """A column of each law; they stand too far apart to feel one another."""
+    lower = {"mu_i_lc": 0.5, "modified_cam_clay": 2.4}
+    bodies = [
+        {
+            "material": law,
+            "density": 1500.0,
+            "initial_stress": STRESS,
+            "shape": {"kind": "rectangle", "lower": [lower[law], 0.0], "upper": [lower[law] + 0.3, 0.4]},
+        }
+        for law in laws
+    ]
+    return Scene.from_dict(COLUMN | {"material": {law: LAWS[law] for law in laws}, "body": bodies})
+
+
+def columns_after_some_steps(*laws):
+    simulation = Simulation(scene(*laws))
+    for _ in range(STEPS):
+        simulation.step(DT)
+    ordered = {}
+    for body in simulation.bodies:
+        ordered[body.law.name] = body.points[:, np.argsort(body.ids)]
+    return ordered
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_column_falls_as_if_the_one_of_another_law_were_not_there(law):
+    alone, together = columns_after_some_steps(law)[law], columns_after_some_steps(*LAWS)[law]
+    scale = np.abs(alone).max(axis=1, keepdims=True)
+    np.testing.assert_allclose(together / np.maximum(scale, 1e-300), alone / np.maximum(scale, 1e-300), atol=1e-7)
+
+
+def test_code_of_two_laws_from_the_disk_cache_is_not_mixed_up():
+    """Each law's code is put on disk by a process of its own; one that loads both must agree with this one."""
+    script = (
+        "import sys; sys.path.insert(0, sys.argv[1]); import test_two_laws as t; "
+        "print([repr(float(v.sum())) for v in t.columns_after_some_steps(*sys.argv[2:]).values()])"
+    )
+    folder = Path(__file__).parent
+
+    def sums(*laws):
+        command = [sys.executable, "-c", script, folder, *laws]
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+    for law in LAWS:
+        sums(law)
+    here = [repr(float(values.sum())) for values in columns_after_some_steps(*LAWS).values()]
+    assert sums(*LAWS) == f"{here}\n"
