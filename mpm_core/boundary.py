@@ -55,12 +55,13 @@ def hold_at_wall(grid: Grid, wall: Wall, window: Window) -> float:
     first, last = (window.first_x, window.first_y), (window.last_x, window.last_y)
     if not first[wall.axis] <= index <= last[wall.axis]:
         return 0.0
-    strides = (grid.shape[1] * COMPONENTS, COMPONENTS)
     other = 1 - wall.axis
-    start = index * strides[wall.axis] + first[other] * strides[other]
+    start = index * grid.strides[wall.axis] + first[other] * grid.strides[other]
     count = last[other] - first[other] + 1
     sign = 1.0 if wall.is_lower else -1.0
-    return float(_hold(grid.nodes, start, strides[other], count, wall.axis, sign, int(wall.kind), wall.coefficient))
+    return float(
+        _hold(grid.nodes, start, grid.strides[other], count, wall.axis, sign, int(wall.kind), wall.coefficient)
+    )
 
 
 @njit(cache=True)
@@ -92,9 +93,7 @@ def _hold(nodes, start, along, count, axis, sign, kind, friction):  # type: igno
 
 def join_periodic(nodes: NDArray[np.float64], grid: Grid, axis: int) -> None:
     """Add up the nodes that are one and the same across a periodic axis, and give all copies the sum."""
-    step_x, step_y = grid.shape[1] * COMPONENTS, COMPONENTS
-    across, along = (step_x, step_y) if axis == 0 else (step_y, step_x)
-    _join(nodes, across, along, grid.shape[axis], grid.shape[1 - axis], grid.cells[axis])
+    _join(nodes, grid.strides[axis], grid.strides[1 - axis], grid.shape[axis], grid.shape[1 - axis], grid.cells[axis])
 
 
 @njit(cache=True)

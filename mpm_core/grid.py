@@ -53,6 +53,11 @@ class Grid:
         self.ghosts = (*walls[0], *walls[1])
         self.origin = (lower[0] - GHOSTS * cell_size, lower[1] - GHOSTS * cell_size)
 
+    @property
+    def strides(self) -> tuple[int, int]:
+        """Distance in `nodes` between neighbours along x and along y."""
+        return self.shape[1] * COMPONENTS, COMPONENTS
+
     def _ghosts(self, axis: int) -> tuple[int, int]:
         return GHOSTS - 1, GHOSTS + self.cells[axis] + 1
 

@@ -11,6 +11,7 @@ multiplied by gamma_dot/(gamma_dot + QUIET_RATE). Points with stress, elastic an
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -126,6 +127,7 @@ def ordered_bits(value):  # type: ignore[no-untyped-def]
     return np.float64(value).view(np.int64)
 
 
+@cache
 def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..., Any]:
     """The stress pass of a law; it takes the law's parameters as a plain tuple, and dt over the time constant.
 

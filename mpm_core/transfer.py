@@ -19,6 +19,7 @@ loaded from the disk cache then differ in the last bit, and a resumed run would 
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,7 @@ KINETIC_ENERGY, LOWEST_X, HIGHEST_X, LOWEST_Y, HIGHEST_Y, MAX_SPEED, MOVED_X, MO
 REPORTS = 8
 
 
+@cache
 def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
     """Scatter mass, volume, momentum and internal force of the stripes of one parity to the grid.
 
@@ -88,6 +90,7 @@ def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
     return points_to_grid
 
 
+@cache
 def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
     """Gather velocity, velocity gradient and the density around from the grid, and move the points.
 

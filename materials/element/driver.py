@@ -7,6 +7,7 @@ rho_{n+1} = rho_n exp(-tr D dt), that is d(ln v) = tr D dt.
 
 import math
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from numba import njit
 from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw, explained, mark_of_sources, named, pointwise_law
-from materials.element import search
+from materials.element import search as search_module
 from materials.element.path import LoadingPath
 from materials.element.point import Point
 from materials.element.search import narrowed, search_from
@@ -29,12 +30,13 @@ MAXIMUM_ITERATIONS = 200
 # Share of the prescribed rate by which x first moves while its slope is unknown.
 FIRST_REACH = 0.1
 
-SEARCH_MARK = mark_of_sources([Path(search.__file__)])
+SEARCH_MARK = mark_of_sources([Path(search_module.__file__)])
 
 register_jitable(search_from)
 register_jitable(narrowed)
 
 
+@cache
 def make_advance(law: PointwiseLaw) -> Any:
     """The compiled loop over the steps of a path, for one law.
 

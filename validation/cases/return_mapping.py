@@ -20,7 +20,7 @@ LAW = get_material("modified_cam_clay")
 PARAMETERS = LAW.parameter_sets["paper"].parameters
 LARGEST_STRAIN = 0.2
 # Largest strain of an increment, smallest strain of it, and how many increments are compared with substeps.
-SMALL_STRAIN, COMPARED = 1e-5, 300
+COMPARED = 300
 
 
 def random_cases(count: int, smallest: float, largest: float, largest_ocr: float = 100.0) -> np.ndarray:
