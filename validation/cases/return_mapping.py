@@ -19,7 +19,7 @@ SUBSTEPS, LONGEST_COUNT = 1000, 100
 LAW = get_material("modified_cam_clay")
 PARAMETERS = LAW.parameter_sets["paper"].parameters
 LARGEST_STRAIN = 0.2
-# Largest strain of an increment, smallest strain of it, and how many increments are compared with substeps.
+# How many increments are compared with substeps.
 COMPARED = 300
 
 
