@@ -22,9 +22,3 @@ def _fused(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
 def fma(a: float, b: float, c: float) -> float:
     """Return a b + c, rounded once."""
     return _fused(a, b, c)  # type: ignore[call-arg]
-
-
-@register_jitable
-def deposit(nodes, position, weight, value):  # type: ignore[no-untyped-def]
-    """Add weight * value to a component of a node."""
-    nodes[position] = fma(weight, value, nodes[position])

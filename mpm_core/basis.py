@@ -31,7 +31,7 @@ class Basis:
     width         number of nodes of a stencil
     offset        the first node of the stencil of a point at x is floor(x - offset)
     weights       weights of the nodes at the distance f from the first
-    moment        second moment of the weights about the point
+    inverse_moment  one over the second moment of the weights about the point
     lower_wall    weights where the first node is a ghost
     upper_wall    weights where the last node is a ghost
     """
@@ -40,7 +40,7 @@ class Basis:
     width: int
     offset: float
     weights: Callable[..., tuple[float, ...]]
-    moment: Callable[[float], float]
+    inverse_moment: Callable[[float], float]
     lower_wall: Callable[..., tuple[float, ...]]
     upper_wall: Callable[..., tuple[float, ...]]
 
@@ -52,9 +52,9 @@ def linear_weights(f: float) -> tuple[float, float]:
 
 
 @register_jitable
-def linear_moment(f: float) -> float:
-    """F (1 - f), which vanishes at the nodes together with the weight of the far node."""
-    return max(f * (1.0 - f), 1e-12)
+def inverse_linear_moment(f: float) -> float:
+    """1/(f (1 - f)); the moment vanishes at the nodes together with the weight of the far node."""
+    return 1.0 / max(f * (1.0 - f), 1e-12)
 
 
 @register_jitable
@@ -70,9 +70,9 @@ def quadratic_weights(f: float) -> tuple[float, float, float]:
 
 
 @register_jitable
-def quadratic_moment(f: float) -> float:
-    """1/4 everywhere."""
-    return 0.25
+def inverse_quadratic_moment(f: float) -> float:
+    """4 everywhere."""
+    return 4.0
 
 
 @register_jitable
@@ -100,9 +100,9 @@ def cubic_weights(f: float) -> tuple[float, float, float, float]:
 
 
 @register_jitable
-def cubic_moment(f: float) -> float:
-    """1/3 everywhere."""
-    return 1.0 / 3.0
+def inverse_cubic_moment(f: float) -> float:
+    """3 everywhere."""
+    return 3.0
 
 
 @register_jitable
@@ -120,25 +120,25 @@ def cubic_at_upper_wall(w: tuple[float, float, float, float]) -> tuple[float, fl
 BASES = {
     basis.name: basis
     for basis in (
-        Basis("linear", 2, 0.0, linear_weights, linear_moment, linear_at_wall, linear_at_wall),
+        Basis("linear", 2, 0.0, linear_weights, inverse_linear_moment, linear_at_wall, linear_at_wall),
         Basis(
             "quadratic",
             3,
             0.5,
             quadratic_weights,
-            quadratic_moment,
+            inverse_quadratic_moment,
             quadratic_at_lower_wall,
             quadratic_at_upper_wall,
         ),
-        Basis("cubic", 4, 1.0, cubic_weights, cubic_moment, cubic_at_lower_wall, cubic_at_upper_wall),
+        Basis("cubic", 4, 1.0, cubic_weights, inverse_cubic_moment, cubic_at_lower_wall, cubic_at_upper_wall),
     )
 }
 
 
 def make_stencil(basis: Basis) -> Callable[..., tuple[int, float, tuple[float, ...], float]]:
-    """A function (grid coordinate, lower ghost, upper ghost) -> (first node, f, weights, moment) for compiled code."""
-    width, offset, weights, moment = basis.width, basis.offset, basis.weights, basis.moment
-    at_lower_wall, at_upper_wall = basis.lower_wall, basis.upper_wall
+    """A function (grid coordinate, lower ghost, upper ghost) -> (first node, f, weights, 1/moment) for compiled code."""
+    width, offset, weights = basis.width, basis.offset, basis.weights
+    inverse_moment, at_lower_wall, at_upper_wall = basis.inverse_moment, basis.lower_wall, basis.upper_wall
 
     @register_jitable
     @named(f"{basis.name}_{CORE_MARK}")
@@ -147,13 +147,13 @@ def make_stencil(basis: Basis) -> Callable[..., tuple[int, float, tuple[float, .
         first = min(int(coordinate - offset), upper_ghost - width + 1)
         f = coordinate - first
         w = weights(f)
-        second_moment = moment(f)
+        inverse = inverse_moment(f)
         if first == lower_ghost:
-            second_moment = max(second_moment - 2.0 * w[0], SMALLEST_MOMENT_AT_WALL)
+            inverse = 1.0 / max(1.0 / inverse - 2.0 * w[0], SMALLEST_MOMENT_AT_WALL)
             w = at_lower_wall(w)
         elif first + width - 1 == upper_ghost:
-            second_moment = max(second_moment - 2.0 * w[width - 1], SMALLEST_MOMENT_AT_WALL)
+            inverse = 1.0 / max(1.0 / inverse - 2.0 * w[width - 1], SMALLEST_MOMENT_AT_WALL)
             w = at_upper_wall(w)
-        return first, f, w, second_moment
+        return first, f, w, inverse
 
     return stencil

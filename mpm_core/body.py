@@ -35,6 +35,7 @@ class Body:
         self.law = law
         self.parameters = parameters
         self.points = points
+        self.rows = tuple(points)
         self.point_mass = point_mass
         self.initial_density = float(points[DENSITY, 0])
         self.ids = np.arange(first_id, first_id + points.shape[1])
@@ -62,7 +63,7 @@ class Body:
         self._points_to_grid = make_points_to_grid(basis)
         self._grid_to_points = make_grid_to_points(basis)
         self._stress_pass = make_stress_pass(pointwise_law(self.law), keeps_shear_strain)
-        nothing = allocate(self.points.shape[0], 8)[:, :0]
+        nothing = tuple(allocate(self.points.shape[0], 0))
         explained(self.law, self._stress_pass, nothing, 1.0, tuple(self.parameters), 0.0, 0.0, self.stress_reports[:0])
 
     @property
@@ -100,7 +101,7 @@ class Body:
         """Scatter mass, momentum and internal force."""
         for parity in (0, 1):
             self._points_to_grid(
-                self.points,
+                self.rows,
                 self.point_mass,
                 self.stripe_starts,
                 self.chunks,
@@ -115,7 +116,7 @@ class Body:
     def from_grid(self, grid: Grid, dt: float, memory: float) -> None:
         """Gather velocity and its gradient, move the points."""
         self._grid_to_points(
-            self.points,
+            self.rows,
             self.point_mass,
             grid.nodes,
             grid.shape[1],
@@ -134,7 +135,7 @@ class Body:
 
     def update_stress(self, dt: float, exchange: float) -> None:
         """Rotate the stress, bring the density forward, call the law."""
-        self._stress_pass(self.points, self.point_mass, tuple(self.parameters), dt, exchange, self.stress_reports)
+        self._stress_pass(self.rows, self.point_mass, tuple(self.parameters), dt, exchange, self.stress_reports)
 
     def state(self, name: str) -> NDArray[np.float64]:
         """A state variable of all points, in their present order. Raises InputError for an unknown name."""

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mpm_core.lanes import BYTES, LANES
+
 # Components of a node. Before the momentum update: mass, momentum, force, volume; after it: mass, new and old velocity,
-# density.
+# density. The rest fills the node up to one vector of `lanes`.
 MASS = 0
 PX, PY, FX, FY, VOLUME = 1, 2, 3, 4, 5
 NEW_VX, NEW_VY, OLD_VX, OLD_VY, NODE_DENSITY = 1, 2, 3, 4, 5
-COMPONENTS = 6
+COMPONENTS = LANES
 
 # Nodes beyond each side of the domain, enough for the widest stencil of a point that touches a wall.
 GHOSTS = 2
@@ -47,7 +49,7 @@ class Grid:
         self.cell_size = cell_size
         self.upper = (lower[0] + cells[0] * cell_size, lower[1] + cells[1] * cell_size)
         self.shape = (cells[0] + 1 + 2 * GHOSTS, cells[1] + 1 + 2 * GHOSTS)
-        self.nodes: NDArray[np.float64] = np.zeros(self.shape[0] * self.shape[1] * COMPONENTS)
+        self.nodes: NDArray[np.float64] = _aligned_zeros(self.shape[0] * self.shape[1] * COMPONENTS)
         # The nodes just beyond the walls, whose velocity is tied to the inside; no node where the axis is periodic.
         walls = [NO_GHOSTS if axis in periodic_axes else self._ghosts(axis) for axis in (0, 1)]
         self.ghosts = (*walls[0], *walls[1])
@@ -66,3 +68,10 @@ class Grid:
         first = [int((lower[axis] - self.origin[axis]) / self.cell_size - offset) for axis in (0, 1)]
         last = [int((upper[axis] - self.origin[axis]) / self.cell_size - offset) + width - 1 for axis in (0, 1)]
         return Window(first[0], last[0], first[1], last[1])
+
+
+def _aligned_zeros(count: int) -> NDArray[np.float64]:
+    """Zeroed doubles that start on a boundary of vectors; the memory is not touched."""
+    room = np.zeros(count + LANES)
+    start = (-room.ctypes.data % BYTES) // room.itemsize
+    return room[start : start + count]

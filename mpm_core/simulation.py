@@ -119,7 +119,8 @@ class Simulation:
 
     def _take_reports(self, dt: float) -> None:
         for body in self.bodies:
-            if not body.stress_reports[:, MAX_INCREMENT].max() < LARGEST_INCREMENT:
+            increment, speed = body.stress_reports[:, [MAX_INCREMENT, MAX_SIGNAL_SPEED]].max(axis=0)
+            if not (increment < LARGEST_INCREMENT and speed < math.inf):
                 self._fail_unsound(body, dt)
         reports = np.concatenate([body.transfer_reports for body in self.bodies])
         lower = (float(reports[:, LOWEST_X].min()), float(reports[:, LOWEST_Y].min()))

@@ -11,6 +11,7 @@ KERNEL_FILES = (
     "columns",
     "fields",
     "grid",
+    "lanes",
     "momentum",
     "sorting",
     "stress",

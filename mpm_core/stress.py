@@ -36,12 +36,16 @@ from mpm_core.columns import (
     SZZ,
     VX,
     VY,
+    X,
 )
 from mpm_core.sources import CORE_MARK
 from mpm_core.transfer import BLOCK
 
 # The shear rate [1/s] below which material counts as at rest.
 QUIET_RATE = 0.1
+
+# Points that go through the parts of the pass together; they stay in the nearest cache.
+GROUP = 256
 
 # What `stress_pass` reports for each block of points.
 MAX_SIGNAL_SPEED, INTERNAL_WORK, MAX_INCREMENT = range(3)
@@ -59,63 +63,77 @@ def replaced(values, k, value):  # type: ignore[no-untyped-def]
 
 
 def make_state_access(state_class: type[Any], mark: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Functions that load a law's state of one point from its columns, and store it."""
-    count = len(state_class._fields)
-    zeros = (0.0,) * count
-
-    if count == 0:
-
-        @register_jitable
-        @named(mark)
-        def load_nothing(columns, p):  # type: ignore[no-untyped-def]
-            return state_class()
-
-        @register_jitable
-        @named(mark)
-        def store_nothing(columns, p, state):  # type: ignore[no-untyped-def]
-            pass
-
-        return load_nothing, store_nothing
+    """Functions that load a law's state of one point from its rows, and store it."""
+    zeros = (0.0,) * len(state_class._fields)
+    load_values, store_values = _load_none, _store_none
+    for k in range(len(zeros)):
+        load_values, store_values = _with_variable(k, load_values, store_values, mark)
 
     @register_jitable
     @named(mark)
-    def load(columns, p):  # type: ignore[no-untyped-def]
-        values = zeros
-        for k in range(count):
-            values = replaced(values, k, columns[k, p])
-        return state_class(*values)
+    def load(rows, p):  # type: ignore[no-untyped-def]
+        return state_class(*load_values(rows, p, zeros))
+
+    return load, store_values
+
+
+@register_jitable
+def _load_none(rows, p, values):  # type: ignore[no-untyped-def]
+    return values
+
+
+@register_jitable
+def _store_none(rows, p, state):  # type: ignore[no-untyped-def]
+    pass
+
+
+def _with_variable(
+    k: int, load_others: Callable[..., Any], store_others: Callable[..., Any], mark: str
+) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Access to one state variable more. Its row is fixed when the functions are made, as the compiler wants it."""
+    row = FIRST_STATE + k
 
     @register_jitable
-    @named(mark)
-    def store(columns, p, state):  # type: ignore[no-untyped-def]
-        for k in range(count):
-            columns[k, p] = state[k]
+    @named(f"{mark}_{k}")
+    def load(rows, p, values):  # type: ignore[no-untyped-def]
+        return replaced(load_others(rows, p, values), k, rows[row][p])
+
+    @register_jitable
+    @named(f"{mark}_{k}")
+    def store(rows, p, state):  # type: ignore[no-untyped-def]
+        store_others(rows, p, state)
+        rows[row][p] = state[k]
 
     return load, store
 
 
 @register_jitable
 def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
-    """In-plane stress components after a rotation by `angle`, in Cayley's form, which is exactly orthogonal.
+    """In-plane stress components after a rotation by `angle`.
 
-    The angle of that form is 2 atan(t); t = tan(angle/2) to third order.
+    Sine and cosine of twice the angle are the power series that end below 1e-12 at an angle of a quarter.
     """
-    t = 0.5 * angle * (1.0 + angle * angle / 12.0)
-    inverse = 1.0 / (1.0 + t * t)
-    cosine, sine = (1.0 - t * t) * inverse, 2.0 * t * inverse
-    cosine_2, sine_2 = cosine * cosine - sine * sine, 2.0 * sine * cosine
+    t = angle + angle
+    u = t * t
+    sine = t * (1.0 - u * (1.0 / 6.0) * (1.0 - u * (1.0 / 20.0) * (1.0 - u * (1.0 / 42.0) * (1.0 - u * (1.0 / 72.0)))))
+    cosine = 1.0 - u * 0.5 * (
+        1.0 - u * (1.0 / 12.0) * (1.0 - u * (1.0 / 30.0) * (1.0 - u * (1.0 / 56.0) * (1.0 - u * (1.0 / 90.0))))
+    )
     mean, half = 0.5 * (sxx + syy), 0.5 * (sxx - syy)
-    turned = half * cosine_2 - sxy * sine_2
-    return mean + turned, mean - turned, half * sine_2 + sxy * cosine_2
+    turned = half * cosine - sxy * sine
+    return mean + turned, mean - turned, half * sine + sxy * cosine
 
 
 @register_jitable
 def closing_strain(density, around, shear_rate, exchange):  # type: ignore[no-untyped-def]
-    """The compressive strain of one step towards the density around; `exchange` is dt over the time constant."""
-    share = exchange * shear_rate / (shear_rate + QUIET_RATE)
-    # ln(around/density) to third order, bounded by 2 for points that have lost contact
-    difference = max(0.0, 2.0 * (around - density) / (around + density))
-    return difference * share / (1.0 + share)
+    """The compressive strain of one step towards the density around; `exchange` is dt over the time constant.
+
+    It is d s/(1 + s) with the share s = exchange gamma_dot/(gamma_dot + QUIET_RATE) and d = ln(around/density), the latter
+    to third order, bounded by 2 for points that have lost contact.
+    """
+    share = exchange * shear_rate
+    difference = max(0.0, 2.0 * (around - density))
+    return difference * share / ((around + density) * (shear_rate + QUIET_RATE + share))
 
 
 @register_jitable
@@ -125,6 +143,47 @@ def ordered_bits(value):  # type: ignore[no-untyped-def]
     A maximum of integers is vectorised and keeps NaN; a maximum of floats does one or the other.
     """
     return np.float64(value).view(np.int64)
+
+
+@register_jitable
+def bring_forward(rows, first, last, dt, exchange, closings, works, keeps_shear_strain):  # type: ignore[no-untyped-def]
+    """Rotate the stress and bring the density to the end of the step; returns the largest volumetric increment.
+
+    `closings` receives the isotropic strain rate of points without contact, `works` the power of the old stress over mass.
+    """
+    lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+    sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
+    density, around, shear_strain = rows[DENSITY], rows[DENSITY_AROUND], rows[SHEAR_STRAIN]
+    largest = np.int64(0)
+    for p in range(first, last):
+        motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
+        shear_rate = shear_strain_rate(motion)
+        has_contact = sxx[p] != 0.0 or syy[p] != 0.0
+        closing = 0.0 if has_contact else closing_strain(density[p], around[p], shear_rate, exchange)
+        half_increment = 0.5 * (dt * trace(motion) - closing)
+        xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
+        closings[p - first] = closing * (-1.0 / (3.0 * dt))
+        works[p - first] = (xx * motion.xx + yy * motion.yy + 2.0 * xy * motion.xy) / density[p]
+        sxx[p], syy[p], sxy[p] = xx, yy, xy
+        density[p] *= (1.0 - half_increment) / (1.0 + half_increment)
+        if keeps_shear_strain:
+            shear_strain[p] += dt * shear_rate
+        largest = max(largest, ordered_bits(abs(2.0 * half_increment)))
+    return largest
+
+
+@register_jitable
+def work_done(rows, first, last, works):  # type: ignore[no-untyped-def]
+    """The mean of the powers of the old and the new stress over mass, summed over the points [W/kg]."""
+    lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+    sxx, syy, sxy, density = rows[SXX], rows[SYY], rows[SXY], rows[DENSITY]
+    for p in range(first, last):
+        power = sxx[p] * lxx[p] + syy[p] * lyy[p] + sxy[p] * (lxy[p] + lyx[p])
+        works[p - first] = 0.5 * (works[p - first] + power / density[p])
+    total = 0.0
+    for p in range(first, last):
+        total += works[p - first]
+    return total
 
 
 @cache
@@ -141,61 +200,47 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
 
     @register_jitable
     @named(mark)
-    def update_block(  # type: ignore[no-untyped-def]
-        vx, vy, lxx, lxy, lyx, lyy, sxx, syy, szz, sxy, density, around, shear_strain, states, parameters, dt, exchange
-    ):
+    def apply_law(rows, first, last, closings, parameters, dt):  # type: ignore[no-untyped-def]
+        lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+        sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
         law_parameters = parameter_class(*parameters)
-        work = 0.0
-        fastest, largest = np.int64(0), np.int64(0)
-        for p in range(len(vx)):
+        for p in range(first, last):
             motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-            shear_rate = shear_strain_rate(motion)
-            xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
-            has_contact = sxx[p] != 0.0 or syy[p] != 0.0
-            closing = 0.0 if has_contact else closing_strain(density[p], around[p], shear_rate, exchange)
-            strain_rate = added(motion, isotropic(-closing / (3.0 * dt)))
-            half_increment = 0.5 * (dt * trace(motion) - closing)
-            new_density = density[p] * (1.0 - half_increment) / (1.0 + half_increment)
-            old_stress = SymmetricTensor(xx, yy, szz[p], xy, 0.0, 0.0)
-            stress, state = update(old_stress, strain_rate, new_density, load(states, p), law_parameters, dt)
-            store(states, p, state)
-            work += contraction(added(old_stress, stress), motion) / (density[p] + new_density)
+            strain_rate = added(motion, isotropic(closings[p - first]))
+            stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
+            stress, state = update(stress, strain_rate, density[p], load(rows, p), law_parameters, dt)
             sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
-            density[p] = new_density
-            if keeps_shear_strain:
-                shear_strain[p] += dt * shear_rate
-            signal_speed = sound_speed(stress, new_density, state, law_parameters) + np.sqrt(
-                vx[p] * vx[p] + vy[p] * vy[p]
-            )
-            fastest = max(fastest, ordered_bits(signal_speed))
-            not_finite = 0.0 * (stress.xx + stress.yy + stress.zz + stress.xy + signal_speed)
-            largest = max(largest, ordered_bits(abs(2.0 * half_increment + not_finite)))
-        return fastest, work, largest
+            store(rows, p, state)
+
+    @register_jitable
+    @named(mark)
+    def largest_signal_speed(rows, first, last, parameters):  # type: ignore[no-untyped-def]
+        vx, vy = rows[VX], rows[VY]
+        sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
+        law_parameters = parameter_class(*parameters)
+        fastest = np.int64(0)
+        for p in range(first, last):
+            stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
+            speed = np.sqrt(vx[p] * vx[p] + vy[p] * vy[p])
+            sound = sound_speed(stress, density[p], load(rows, p), law_parameters)
+            not_finite = 0.0 * (sxx[p] + syy[p] + szz[p] + sxy[p])
+            fastest = max(fastest, ordered_bits(speed + sound + not_finite))
+        return fastest
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(mark)
-    def stress_pass(points, point_mass, parameters, dt, exchange, reports):  # type: ignore[no-untyped-def]
+    def stress_pass(rows, point_mass, parameters, dt, exchange, reports):  # type: ignore[no-untyped-def]
+        count = len(rows[X])
         for block in prange(reports.shape[0]):
-            rows = points[:, block * BLOCK : (block + 1) * BLOCK]
-            fastest, work, largest = update_block(
-                rows[VX],
-                rows[VY],
-                rows[LXX],
-                rows[LXY],
-                rows[LYX],
-                rows[LYY],
-                rows[SXX],
-                rows[SYY],
-                rows[SZZ],
-                rows[SXY],
-                rows[DENSITY],
-                rows[DENSITY_AROUND],
-                rows[SHEAR_STRAIN],
-                rows[FIRST_STATE:],
-                parameters,
-                dt,
-                exchange,
-            )
+            closings, works = np.empty(GROUP), np.empty(GROUP)
+            fastest, largest, work = np.int64(0), np.int64(0), 0.0
+            for start in range(block * BLOCK, min(count, (block + 1) * BLOCK), GROUP):
+                first, last = np.uint64(start), np.uint64(min(count, start + GROUP))
+                increment = bring_forward(rows, first, last, dt, exchange, closings, works, keeps_shear_strain)
+                apply_law(rows, first, last, closings, parameters, dt)
+                speed = largest_signal_speed(rows, first, last, parameters)
+                work += work_done(rows, first, last, works)
+                fastest, largest = max(fastest, speed), max(largest, increment)
             reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
             reports[block, INTERNAL_WORK] = point_mass * dt * work
             reports[block, MAX_INCREMENT] = np.int64(largest).view(np.float64)

@@ -26,13 +26,14 @@ import numpy as np
 from numba import njit, prange
 
 from materials.compilation import named
-from mpm_core.arithmetic import deposit, fma
 from mpm_core.basis import Basis, make_stencil
 from mpm_core.columns import DENSITY, DENSITY_AROUND, LXX, LXY, LYX, LYY, SXX, SXY, SYY, VX, VY, X, Y
-from mpm_core.grid import COMPONENTS, FX, FY, MASS, NEW_VX, NEW_VY, NODE_DENSITY, OLD_VX, OLD_VY, PX, PY, VOLUME
+from mpm_core.grid import COMPONENTS, NEW_VX, NEW_VY, NODE_DENSITY, OLD_VX, OLD_VY
+from mpm_core.lanes import LANES, deposit, lane, lanes, node_at, scaled_sum
 from mpm_core.sources import CORE_MARK
 
 BLOCK = 2048
+ZEROS = (0.0,) * LANES
 
 # What `grid_to_points` reports for each block of points.
 KINETIC_ENERGY, LOWEST_X, HIGHEST_X, LOWEST_Y, HIGHEST_Y, MAX_SPEED, MOVED_X, MOVED_Y = range(8)
@@ -50,42 +51,34 @@ def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{basis.name}_{CORE_MARK}")
     def points_to_grid(  # type: ignore[no-untyped-def]
-        points, point_mass, stripe_starts, chunks, parity, nodes, nodes_y, ghosts, origin_x, origin_y, cell_size
+        rows, point_mass, stripe_starts, chunks, parity, nodes, nodes_y, ghosts, origin_x, origin_y, cell_size
     ):
-        x, y, vx, vy = points[X], points[Y], points[VX], points[VY]
-        lxx, lxy, lyx, lyy = points[LXX], points[LXY], points[LYX], points[LYY]
-        sxx, syy, sxy, density = points[SXX], points[SYY], points[SXY], points[DENSITY]
+        x, y, vx, vy = rows[X], rows[Y], rows[VX], rows[VY]
+        lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+        sxx, syy, sxy, density = rows[SXX], rows[SYY], rows[SXY], rows[DENSITY]
         inverse_size = 1.0 / cell_size
         affine = point_mass * cell_size
         for chunk in prange(chunks.shape[0] - 1):
             for stripe in range(chunks[chunk] + (chunks[chunk] + parity) % 2, chunks[chunk + 1], 2):
-                for p in range(stripe_starts[stripe], stripe_starts[stripe + 1]):
-                    i, fx, wx, moment_x = stencil((x[p] - origin_x) * inverse_size, ghosts[0], ghosts[1])
-                    j, fy, wy, moment_y = stencil((y[p] - origin_y) * inverse_size, ghosts[2], ghosts[3])
+                for p in range(np.uint64(stripe_starts[stripe]), np.uint64(stripe_starts[stripe + 1])):
+                    i, fx, wx, inverse_x = stencil((x[p] - origin_x) * inverse_size, ghosts[0], ghosts[1])
+                    j, fy, wy, inverse_y = stencil((y[p] - origin_y) * inverse_size, ghosts[2], ghosts[3])
                     volume = point_mass / density[p]
-                    force_x = volume * inverse_size / moment_x
-                    force_y = volume * inverse_size / moment_y
-                    momentum_x = point_mass * vx[p]
-                    momentum_y = point_mass * vy[p]
-                    axy, ayy = affine * lxy[p], affine * lyy[p]
-                    fxy, fyy = force_y * sxy[p], force_y * syy[p]
+                    force_x = -volume * inverse_size * inverse_x
+                    force_y = -volume * inverse_size * inverse_y
+                    here = lanes((point_mass, point_mass * vx[p], point_mass * vy[p], 0.0, 0.0, volume, 0.0, 0.0))
+                    along_x = lanes(
+                        (0.0, affine * lxx[p], affine * lyx[p], force_x * sxx[p], force_x * sxy[p], 0.0, 0.0, 0.0)
+                    )
+                    along_y = lanes(
+                        (0.0, affine * lxy[p], affine * lyy[p], force_y * sxy[p], force_y * syy[p], 0.0, 0.0, 0.0)
+                    )
                     for a in range(width):
-                        dx = a - fx
                         row = np.uint64(((i + a) * nodes_y + j) * COMPONENTS)
-                        px = momentum_x + affine * lxx[p] * dx
-                        py = momentum_y + affine * lyx[p] * dx
-                        qx = force_x * sxx[p] * dx
-                        qy = force_x * sxy[p] * dx
+                        in_row = scaled_sum(a - fx, along_x, here)
                         for b in range(width):
-                            dy = b - fy
-                            w = wx[a] * wy[b]
-                            node = row + np.uint64(b * COMPONENTS)
-                            deposit(nodes, node + np.uint64(MASS), w, point_mass)
-                            deposit(nodes, node + np.uint64(PX), w, fma(axy, dy, px))
-                            deposit(nodes, node + np.uint64(PY), w, fma(ayy, dy, py))
-                            deposit(nodes, node + np.uint64(VOLUME), w, volume)
-                            deposit(nodes, node + np.uint64(FX), -w, fma(fxy, dy, qx))
-                            deposit(nodes, node + np.uint64(FY), -w, fma(fyy, dy, qy))
+                            amounts = scaled_sum(b - fy, along_y, in_row)
+                            deposit(nodes, row + np.uint64(b * COMPONENTS), wx[a] * wy[b], amounts)
 
     return points_to_grid
 
@@ -102,46 +95,39 @@ def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{basis.name}_{CORE_MARK}")
     def grid_to_points(  # type: ignore[no-untyped-def]
-        points, point_mass, nodes, nodes_y, ghosts, origin_x, origin_y, cell_size, dt, memory, reports
+        rows, point_mass, nodes, nodes_y, ghosts, origin_x, origin_y, cell_size, dt, memory, reports
     ):
-        x, y, vx, vy = points[X], points[Y], points[VX], points[VY]
-        lxx, lxy, lyx, lyy = points[LXX], points[LXY], points[LYX], points[LYY]
-        density_around = points[DENSITY_AROUND]
+        x, y, vx, vy = rows[X], rows[Y], rows[VX], rows[VY]
+        lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+        density_around = rows[DENSITY_AROUND]
         inverse_size = 1.0 / cell_size
-        count = points.shape[1]
+        count = len(x)
+        zero = lanes(ZEROS)
         for block in prange(reports.shape[0]):
             twice_energy = 0.0
             lowest_x, highest_x, lowest_y, highest_y = np.inf, -np.inf, np.inf, -np.inf
             fastest, moved_x, moved_y = 0.0, 0.0, 0.0
-            for p in range(block * BLOCK, min(count, (block + 1) * BLOCK)):
-                i, fx, wx, moment_x = stencil((x[p] - origin_x) * inverse_size, ghosts[0], ghosts[1])
-                j, fy, wy, moment_y = stencil((y[p] - origin_y) * inverse_size, ghosts[2], ghosts[3])
-                new_vx, new_vy, old_vx, old_vy = 0.0, 0.0, 0.0, 0.0
-                gxx, gxy, gyx, gyy = 0.0, 0.0, 0.0, 0.0
-                around = 0.0
+            for p in range(np.uint64(block * BLOCK), np.uint64(min(count, (block + 1) * BLOCK))):
+                i, fx, wx, inverse_x = stencil((x[p] - origin_x) * inverse_size, ghosts[0], ghosts[1])
+                j, fy, wy, inverse_y = stencil((y[p] - origin_y) * inverse_size, ghosts[2], ghosts[3])
+                mean, slope_x, slope_y = zero, zero, zero
                 for a in range(width):
-                    dx = a - fx
                     row = np.uint64(((i + a) * nodes_y + j) * COMPONENTS)
+                    in_row, along_row = zero, zero
                     for b in range(width):
-                        dy = b - fy
-                        w = wx[a] * wy[b]
-                        node = row + np.uint64(b * COMPONENTS)
-                        ux = w * nodes[node + np.uint64(NEW_VX)]
-                        uy = w * nodes[node + np.uint64(NEW_VY)]
-                        new_vx += ux
-                        new_vy += uy
-                        gxx = fma(ux, dx, gxx)
-                        gxy = fma(ux, dy, gxy)
-                        gyx = fma(uy, dx, gyx)
-                        gyy = fma(uy, dy, gyy)
-                        around = fma(w, nodes[node + np.uint64(NODE_DENSITY)], around)
-                        old_vx = fma(w, nodes[node + np.uint64(OLD_VX)], old_vx)
-                        old_vy = fma(w, nodes[node + np.uint64(OLD_VY)], old_vy)
-                scale_x = inverse_size / moment_x
-                scale_y = inverse_size / moment_y
-                lxx[p], lxy[p] = gxx * scale_x, gxy * scale_y
-                lyx[p], lyy[p] = gyx * scale_x, gyy * scale_y
-                density_around[p] = around
+                        node = node_at(nodes, row + np.uint64(b * COMPONENTS))
+                        in_row = scaled_sum(wy[b], node, in_row)
+                        along_row = scaled_sum(wy[b] * (b - fy), node, along_row)
+                    mean = scaled_sum(wx[a], in_row, mean)
+                    slope_x = scaled_sum(wx[a] * (a - fx), in_row, slope_x)
+                    slope_y = scaled_sum(wx[a], along_row, slope_y)
+                scale_x = inverse_size * inverse_x
+                scale_y = inverse_size * inverse_y
+                lxx[p], lxy[p] = lane(slope_x, NEW_VX) * scale_x, lane(slope_y, NEW_VX) * scale_y
+                lyx[p], lyy[p] = lane(slope_x, NEW_VY) * scale_x, lane(slope_y, NEW_VY) * scale_y
+                density_around[p] = lane(mean, NODE_DENSITY)
+                new_vx, new_vy = lane(mean, NEW_VX), lane(mean, NEW_VY)
+                old_vx, old_vy = lane(mean, OLD_VX), lane(mean, OLD_VY)
                 velocity_x = new_vx + memory * (vx[p] - old_vx)
                 velocity_y = new_vy + memory * (vy[p] - old_vy)
                 vx[p], vy[p] = velocity_x, velocity_y

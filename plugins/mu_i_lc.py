@@ -104,15 +104,18 @@ def plastic_shear_rate(
     if trial_shear_stress <= static_stress:
         return 0.0
     dynamic_stress = parameters.dynamic_friction * new_pressure
-    reference_rate = (
-        parameters.inertial_number_constant * math.sqrt(new_pressure / parameters.grain_density)
-    ) / parameters.grain_diameter
+    # the rate at which I = I_0; its constant part is computed once for all points
+    rate_at_unit_pressure = parameters.inertial_number_constant / (
+        parameters.grain_diameter * math.sqrt(parameters.grain_density)
+    )
+    reference_rate = rate_at_unit_pressure * math.sqrt(new_pressure)
     # stiffness x^2 - b x - c = 0
     b = trial_shear_stress - dynamic_stress - stiffness * reference_rate
     c = reference_rate * (trial_shear_stress - static_stress)
     root = math.sqrt(b * b + 4.0 * stiffness * c)
     # Of the two forms of the root, the one that subtracts nothing.
-    return (b + root) / (2.0 * stiffness) if b > 0.0 else 2.0 * c / max(root - b, 1e-300)
+    numerator, denominator = (b + root, 2.0 * stiffness) if b > 0.0 else (2.0 * c, max(root - b, 1e-300))
+    return numerator / denominator
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
