@@ -9,16 +9,18 @@ from numpy.typing import NDArray
 NAMES = (
     *("x", "y", "velocity_x", "velocity_y"),
     *("gradient_xx", "gradient_xy", "gradient_yx", "gradient_yy"),
+    *("affine_xx", "affine_xy", "affine_yx", "affine_yy"),
     *("stress_xx", "stress_yy", "stress_zz", "stress_xy"),
     *("density", "density_around", "shear_strain"),
 )
 X, Y = 0, 1
 VX, VY = 2, 3
 LXX, LXY, LYX, LYY = 4, 5, 6, 7
-SXX, SYY, SZZ, SXY = 8, 9, 10, 11
-DENSITY = 12
-DENSITY_AROUND = 13
-SHEAR_STRAIN = 14
+AXX, AXY, AYX, AYY = 8, 9, 10, 11
+SXX, SYY, SZZ, SXY = 12, 13, 14, 15
+DENSITY = 16
+DENSITY_AROUND = 17
+SHEAR_STRAIN = 18
 FIRST_STATE = len(NAMES)
 
 DOUBLES_PER_CACHE_LINE = 8

@@ -27,7 +27,7 @@ from numba import njit, prange
 
 from materials.compilation import named
 from mpm_core.basis import Basis, make_stencil
-from mpm_core.columns import DENSITY, DENSITY_AROUND, LXX, LXY, LYX, LYY, SXX, SXY, SYY, VX, VY, X, Y
+from mpm_core.columns import AXX, AXY, AYX, AYY, DENSITY, DENSITY_AROUND, LXX, LXY, LYX, LYY, SXX, SXY, SYY, VX, VY, X, Y
 from mpm_core.grid import COMPONENTS, NEW_VX, NEW_VY, NODE_DENSITY, OLD_VX, OLD_VY
 from mpm_core.lanes import LANES, deposit, lane, lanes, node_at, scaled_sum
 from mpm_core.sources import CORE_MARK
@@ -54,7 +54,7 @@ def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
         rows, point_mass, stripe_starts, chunks, parity, nodes, nodes_y, ghosts, origin_x, origin_y, cell_size
     ):
         x, y, vx, vy = rows[X], rows[Y], rows[VX], rows[VY]
-        lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+        axx, axy, ayx, ayy = rows[AXX], rows[AXY], rows[AYX], rows[AYY]
         sxx, syy, sxy, density = rows[SXX], rows[SYY], rows[SXY], rows[DENSITY]
         inverse_size = 1.0 / cell_size
         affine = point_mass * cell_size
@@ -68,10 +68,10 @@ def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
                     force_y = -volume * inverse_size * inverse_y
                     here = lanes((point_mass, point_mass * vx[p], point_mass * vy[p], 0.0, 0.0, volume, 0.0, 0.0))
                     along_x = lanes(
-                        (0.0, affine * lxx[p], affine * lyx[p], force_x * sxx[p], force_x * sxy[p], 0.0, 0.0, 0.0)
+                        (0.0, affine * axx[p], affine * ayx[p], force_x * sxx[p], force_x * sxy[p], 0.0, 0.0, 0.0)
                     )
                     along_y = lanes(
-                        (0.0, affine * lxy[p], affine * lyy[p], force_y * sxy[p], force_y * syy[p], 0.0, 0.0, 0.0)
+                        (0.0, affine * axy[p], affine * ayy[p], force_y * sxy[p], force_y * syy[p], 0.0, 0.0, 0.0)
                     )
                     for a in range(width):
                         row = np.uint64(((i + a) * nodes_y + j) * COMPONENTS)
@@ -99,6 +99,7 @@ def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
     ):
         x, y, vx, vy = rows[X], rows[Y], rows[VX], rows[VY]
         lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+        axx, axy, ayx, ayy = rows[AXX], rows[AXY], rows[AYX], rows[AYY]
         density_around = rows[DENSITY_AROUND]
         inverse_size = 1.0 / cell_size
         count = len(x)
@@ -125,6 +126,10 @@ def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
                 scale_y = inverse_size * inverse_y
                 lxx[p], lxy[p] = lane(slope_x, NEW_VX) * scale_x, lane(slope_y, NEW_VX) * scale_y
                 lyx[p], lyy[p] = lane(slope_x, NEW_VY) * scale_x, lane(slope_y, NEW_VY) * scale_y
+                axx[p] = lxx[p] + memory * (axx[p] - lane(slope_x, OLD_VX) * scale_x)
+                axy[p] = lxy[p] + memory * (axy[p] - lane(slope_y, OLD_VX) * scale_y)
+                ayx[p] = lyx[p] + memory * (ayx[p] - lane(slope_x, OLD_VY) * scale_x)
+                ayy[p] = lyy[p] + memory * (ayy[p] - lane(slope_y, OLD_VY) * scale_y)
                 density_around[p] = lane(mean, NODE_DENSITY)
                 new_vx, new_vy = lane(mean, NEW_VX), lane(mean, NEW_VY)
                 old_vx, old_vy = lane(mean, OLD_VX), lane(mean, OLD_VY)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from mpm_core.body import Body
-from mpm_core.columns import LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
+from mpm_core.columns import AXX, AYY, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
 from validation.case import Case, Convergence, Effort, Evidence, Measurement, scaled_error
 from validation.scenes import simulation_of
 
@@ -47,7 +47,7 @@ def place(body: Body, start: np.ndarray, angle: float) -> None:
     turned_x, turned_y = cosine * x - sine * y, sine * x + cosine * y
     body.points[X], body.points[Y] = CENTER + turned_x, CENTER + turned_y
     body.points[VX], body.points[VY] = -turned_y, turned_x
-    body.points[LXX : LYY + 1] = np.array([[0.0], [-1.0], [1.0], [0.0]])
+    body.points[LXX : LYY + 1] = body.points[AXX : AYY + 1] = np.array([[0.0], [-1.0], [1.0], [0.0]])
 
 
 def stress_after(steps_of_a_turn: int, turns: float, withhold_spin: bool = False) -> dict[int, float]:
