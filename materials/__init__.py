@@ -2,6 +2,7 @@
 
 from materials.declarations import Parameter, StateVariable, checked_parameters
 from materials.errors import InputError, SimulationError
+from materials.gap import Contact, after_closing
 from materials.law import HOOK_VERSION, Law, ParameterSet
 from materials.pointwise import pointwise
 from materials.registry import get_material, hookimpl, registry
@@ -31,6 +32,7 @@ from materials.tensor import (
 
 __all__ = [
     "HOOK_VERSION",
+    "Contact",
     "InputError",
     "Law",
     "Parameter",
@@ -39,6 +41,7 @@ __all__ = [
     "StateVariable",
     "SymmetricTensor",
     "added",
+    "after_closing",
     "assembled_stress",
     "checked_parameters",
     "contraction",

@@ -33,6 +33,7 @@ from materials import (
     StateVariable,
     SymmetricTensor,
     added,
+    after_closing,
     assembled_stress,
     contraction,
     deviator,
@@ -117,19 +118,19 @@ def update(
     dt: float,
 ) -> tuple[SymmetricTensor, State]:
     """Close the gap if there is one, then the elastic trial step, the return to F = 0, and opening."""
-    compression = volumetric_strain_rate(strain_rate) * dt
-    shear = scaled(deviator(strain_rate), dt)
-    in_contact = state.gap <= 0.0
-    if not in_contact:
-        if compression <= state.gap:
-            return isotropic(0.0), State(state.preconsolidation_pressure, state.gap - compression)
-        shear = scaled(shear, (compression - state.gap) / compression)
-        compression -= state.gap
+    contact = after_closing(volumetric_strain_rate(strain_rate) * dt, scaled(deviator(strain_rate), dt), state.gap)
+    if contact.gap > 0.0:
+        return isotropic(0.0), State(state.preconsolidation_pressure, contact.gap)
 
     start_pressure = max(pressure(stress), parameters.stress_free_pressure)
     start_deviator = deviator(stress)
     new_pressure, new_preconsolidation, new_deviator = cam_clay_step(
-        start_pressure, start_deviator, compression, shear, state.preconsolidation_pressure, parameters
+        start_pressure,
+        start_deviator,
+        contact.compression,
+        contact.shear,
+        state.preconsolidation_pressure,
+        parameters,
     )
     smallest = parameters.stress_free_pressure
     new_preconsolidation = max(new_preconsolidation, 2.0 * smallest)
