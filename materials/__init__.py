@@ -1,5 +1,6 @@
 """What a constitutive law is: declarations, registry, tensor algebra, compilation and element tests."""
 
+from materials.cam_clay import CamClay, CamClayStep, cam_clay_step
 from materials.declarations import Parameter, StateVariable, checked_parameters
 from materials.errors import InputError, SimulationError
 from materials.gap import Contact, after_closing
@@ -32,6 +33,8 @@ from materials.tensor import (
 
 __all__ = [
     "HOOK_VERSION",
+    "CamClay",
+    "CamClayStep",
     "Contact",
     "InputError",
     "Law",
@@ -43,6 +46,7 @@ __all__ = [
     "added",
     "after_closing",
     "assembled_stress",
+    "cam_clay_step",
     "checked_parameters",
     "contraction",
     "deviator",
