@@ -1,7 +1,9 @@
 """What a constitutive law is: declarations, registry, tensor algebra, compilation and element tests."""
 
+from materials.cam_clay import CamClay, CamClayStep, cam_clay_step
 from materials.declarations import Parameter, StateVariable, checked_parameters
 from materials.errors import InputError, SimulationError
+from materials.gap import Contact, after_closing
 from materials.law import HOOK_VERSION, Law, ParameterSet
 from materials.pointwise import pointwise
 from materials.registry import get_material, hookimpl, registry
@@ -31,6 +33,9 @@ from materials.tensor import (
 
 __all__ = [
     "HOOK_VERSION",
+    "CamClay",
+    "CamClayStep",
+    "Contact",
     "InputError",
     "Law",
     "Parameter",
@@ -39,7 +44,9 @@ __all__ = [
     "StateVariable",
     "SymmetricTensor",
     "added",
+    "after_closing",
     "assembled_stress",
+    "cam_clay_step",
     "checked_parameters",
     "contraction",
     "deviator",

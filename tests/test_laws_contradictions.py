@@ -5,6 +5,7 @@ import pytest
 from materials import InputError, get_material
 
 CASES = [
+    ("drucker_prager", {"dilatancy_angle": 1.0}, "dilatancy_angle = 1 must not be larger than friction_angle"),
     ("modified_cam_clay", {"compression_index": 0.008}, "compression_index = 0.008 must be larger than swelling_index"),
     ("mu_i_lc", {"dynamic_friction": 0.5}, "dynamic_friction = 0.5 must not be smaller than static_friction"),
     ("mu_i_lc_viscous", {"dynamic_friction": 0.5}, "dynamic_friction = 0.5 must not be smaller than static_friction"),

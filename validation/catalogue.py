@@ -18,6 +18,7 @@ NAMES = (
     "self_weight_column",
     "sliding_block",
     "two_discs",
+    "poiseuille",
     "bagnold_incline",
     "mirror_symmetry",
     "shifted_column",

@@ -11,7 +11,12 @@ from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, 
 BAND = 1e-9
 PRESSURE, DENSITY = 1000.0, 1500.0
 CYCLES, OPENING, STEPS = 10, 0.1, 50
-LAWS = {"modified_cam_clay": "paper_ocr4", "mu_i_lc": "paper"}
+LAWS = {
+    "modified_cam_clay": "paper_ocr4",
+    "mu_i_lc": "paper",
+    "drucker_prager": "aluminium_bars",
+    "newtonian": "glycerol",
+}
 
 
 def cycled(law: Law, parameters: Any, forgets_gap: bool = False) -> list[tuple[float, float]]:

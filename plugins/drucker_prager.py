@@ -1,0 +1,179 @@
+"""Drucker-Prager plasticity: friction, cohesion and dilatancy of their own, returned in closed form.
+
+    F   = tau - A p - k <= 0                                                                 (1)
+    D^p = gamma_dot^p [s/(2 tau) + B/3 1]                                                    (2)
+    p_dot = K (d(eps_v)/dt + B gamma_dot^p),   s_dot = 2 G (D_d - D^p_d)                     (3)
+    B   = sin(psi) / sqrt(1 + sin(psi)^2/3)                                                  (4)
+    A   = sin(phi) / n,  k = c cos(phi) / n,  n = sqrt(1 - B^2/3) + B sin(phi)/3             (5)
+
+Matching. A and k are those of plane strain: where the plastic rate along z vanishes, (2) fixes s_zz = -2 B tau/3, and
+(5) is the Mohr-Coulomb strength with friction angle phi and cohesion c, (4) the dilatancy angle psi, both exact. For
+psi = phi (5) is the usual A = 3 tan(phi)/sqrt(9 + 12 tan(phi)^2); for psi = 0 it is A = sin(phi). Bui et al. (2008)
+take the former although their flow does not dilate: 0.332 in place of 0.339 for their angle of 19.8 degrees.
+
+Return. Along (2) the trial state (p*, tau*) moves by K B gamma^p and -G gamma^p: with the plastic shear gamma^p of
+
+    gamma^p = (tau* - A p* - k) / (G + A K B)                                                (6)
+
+it is on the cone. If that asks for tau < 0 the state is the apex, p = -k/A, s = 0; of the volume that is left, what (2)
+does not account for is an opening. It is kept as `gap`, which has to close before the pressure departs from the apex.
+
+Source: Drucker & Prager (1952), Q. Appl. Math. 10; the bars: Bui, Fukagawa, Sako & Ohno (2008), Int. J. Numer. Anal.
+Meth. Geomech. 32.
+Conventions: tensors tension-positive, p compression-positive; tau = sqrt(1/2 s:s); gamma_dot^p is the engineering rate.
+Valid for slow flow. With psi > 0 the material dilates for ever, since no density ends it; an opened cohesive point
+keeps the tension of the apex, however far it opens.
+"""
+
+import math
+from typing import Annotated, Any, NamedTuple
+
+from materials import (
+    Law,
+    Parameter,
+    ParameterSet,
+    StateVariable,
+    SymmetricTensor,
+    added,
+    after_closing,
+    assembled_stress,
+    deviator,
+    half_norm,
+    hookimpl,
+    isotropic,
+    longitudinal_wave_speed,
+    pointwise,
+    pressure,
+    scaled,
+    shear_modulus,
+    volumetric_strain_rate,
+)
+
+
+class Parameters(NamedTuple):
+    """Material constants."""
+
+    friction_angle: Annotated[float, Parameter("rad", "Mohr-Coulomb friction angle phi in plane strain", "[0, 1.5]")]
+    dilatancy_angle: Annotated[float, Parameter("rad", "dilatancy angle psi; at most the friction angle", "[0, 1.5]")]
+    cohesion: Annotated[float, Parameter("Pa", "Mohr-Coulomb cohesion c", "[0, inf)")]
+    bulk_modulus: Annotated[float, Parameter("Pa", "bulk modulus K", "(0, inf)")]
+    poisson_ratio: Annotated[float, Parameter("1", "Poisson's ratio nu", "(-1, 0.5)")]
+
+
+class State(NamedTuple):
+    """What a point remembers."""
+
+    gap: Annotated[float, StateVariable("1", "volumetric strain of opening beyond the apex; 0 while in contact")]
+
+
+class Strength(NamedTuple):
+    """The cone of (4) and (5): tau = friction p + cohesion, and the plastic dilation per plastic shear."""
+
+    friction: float
+    cohesion: float
+    dilatancy: float
+
+
+@pointwise
+def strength_of(parameters: Parameters) -> Strength:
+    """The cone that has the Mohr-Coulomb strength and dilatancy in plane strain."""
+    sine = math.sin(parameters.friction_angle)
+    sine_dilatancy = math.sin(parameters.dilatancy_angle)
+    dilatancy = sine_dilatancy / math.sqrt(1.0 + sine_dilatancy * sine_dilatancy / 3.0)
+    n = math.sqrt(1.0 - dilatancy * dilatancy / 3.0) + dilatancy * sine / 3.0
+    return Strength(sine / n, parameters.cohesion * math.cos(parameters.friction_angle) / n, dilatancy)
+
+
+def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
+    """In contact; the stress is the rest of the memory."""
+    return State(0.0)
+
+
+def update(
+    stress: SymmetricTensor,
+    strain_rate: SymmetricTensor,
+    density: float,
+    state: State,
+    parameters: Parameters,
+    dt: float,
+) -> tuple[SymmetricTensor, State]:
+    """Close the gap if there is one, then the elastic trial step and the return to the cone or its apex."""
+    contact = after_closing(volumetric_strain_rate(strain_rate) * dt, scaled(deviator(strain_rate), dt), state.gap)
+    if contact.gap > 0.0:
+        return stress, State(contact.gap)
+
+    bulk_modulus = parameters.bulk_modulus
+    modulus = shear_modulus(bulk_modulus, parameters.poisson_ratio)
+    trial_pressure = pressure(stress) + bulk_modulus * contact.compression
+    trial = added(deviator(stress), scaled(contact.shear, 2.0 * modulus))
+    trial_tau = half_norm(trial)
+
+    cone = strength_of(parameters)
+    overstress = trial_tau - cone.friction * trial_pressure - cone.cohesion
+    if overstress <= 0.0:
+        return assembled_stress(trial_pressure, trial), State(0.0)
+    plastic_shear = overstress / (modulus + cone.friction * bulk_modulus * cone.dilatancy)
+    tau = trial_tau - modulus * plastic_shear
+    if tau > 0.0:
+        new_pressure = trial_pressure + bulk_modulus * cone.dilatancy * plastic_shear
+        return assembled_stress(new_pressure, scaled(trial, tau / trial_tau)), State(0.0)
+
+    apex = -cone.cohesion / max(cone.friction, 1e-300)
+    dilation = cone.dilatancy * trial_tau / modulus
+    return isotropic(-apex), State(max(0.0, (apex - trial_pressure) / bulk_modulus - dilation))
+
+
+def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Speed of longitudinal elastic waves."""
+    modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
+    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
+
+
+def contradiction(parameters: Parameters) -> str:
+    """Flow that dilates more than friction allows would give out energy."""
+    if parameters.dilatancy_angle <= parameters.friction_angle:
+        return ""
+    return (
+        f"dilatancy_angle = {parameters.dilatancy_angle:g} must not be larger than "
+        f"friction_angle = {parameters.friction_angle:g}"
+    )
+
+
+ALUMINIUM_BARS = Parameters(
+    friction_angle=math.radians(19.8), dilatancy_angle=0.0, cohesion=0.0, bulk_modulus=0.7e6, poisson_ratio=0.3
+)
+
+LAW = Law(
+    name="drucker_prager",
+    summary="Drucker-Prager plasticity with cohesion, dilatancy of its own and an exact tension apex",
+    parameters=Parameters,
+    state=State,
+    initial_state=initial_state,
+    update=update,
+    sound_speed=sound_speed,
+    contradiction=contradiction,
+    parameter_sets={
+        "aluminium_bars": ParameterSet(
+            ALUMINIUM_BARS,
+            "two-dimensional stack of aluminium bars, Bui et al. (2008), friction angle 19.8 degrees",
+            lambda pressure, parameters: 2650.0 * math.exp(pressure / parameters.bulk_modulus),
+        ),
+        "paper": ParameterSet(
+            Parameters(
+                friction_angle=math.asin(1.20 / math.sqrt(3.0)),
+                dilatancy_angle=0.0,
+                cohesion=0.0,
+                bulk_modulus=392e3,
+                poisson_ratio=0.2,
+            ),
+            "A = mu_0 = M/sqrt(3) and K_LC of Table 1 of the paper behind `mu_i_lc`; psi = 0",
+            lambda pressure, parameters: 1500.0 * math.exp(pressure / parameters.bulk_modulus),
+        ),
+    },
+)
+
+
+@hookimpl
+def grainlaw_materials() -> list[Any]:
+    """Register this law."""
+    return [LAW]

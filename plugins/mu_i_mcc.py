@@ -1,0 +1,329 @@
+"""mu(I)-MCC: Modified Cam Clay whose critical state depends on the inertial number; one law for solid and flow.
+
+    (q/(M_csl p))^2 = (2 xi - 1) M_I^2,   xi = p_s/p,   p_s = p_c/2                          (1)
+    M_I = 1 + (M_inf/M_csl - 1) I/(I_M + I)                                                  (2)
+    v = v_csl(p_s) (p_s/p)^kappa exp(I/I_v),   v_csl = exp(Gamma) p_s^-lambda                (3)
+    d(eps_v^p) = (lambda - kappa) d(ln p_s) - dI/I_v                                         (4)
+    d(eps^p) = dLambda [3/M^2 s - (2p - p_c)/3 1],   M = M_csl M_I                           (5)
+    I = gamma_dot^p d_p / sqrt(p/rho_p)                                                      (6)
+
+Derivation. (1) is q^2 = M^2 p (p_c - p), the ellipse of Modified Cam Clay with the slope M(I) of (2). (3) puts the
+steady state p = p_s at v_csl(p) exp(I/I_v), with swelling by kappa away from it; -d(ln v) less the elastic part
+kappa d(ln p) is (4). (4) integrates, whatever the history of I, to
+
+    p_c = p_c0 exp(I / (I_v (lambda - kappa))),   d(ln p_c0) = d(eps_v^p) / (lambda - kappa) (7)
+
+where p_c0, the size of the surface at rest, hardens as in Cam Clay and is the state variable. Flow (5) is associated
+with the surface at the present I: no volume change where 2p = p_c, which is where q/p = M(I) on (1). So steady shear is
+at q/p = M(I) and v = v_csl(p) exp(I/I_v); and I_M, I_v -> infinity leave M = M_csl and p_c = p_c0: Cam Clay.
+A change of the shear rate moves the surface at once, p_c0 only as volume changes: hence overshoot and dilation.
+Dissipation is (p (2p - p_c) + 2 q^2/M^2) dLambda = p p_c dLambda >= 0.
+
+A step. I is the plastic inertial number of the step, with p at its end. For an assumed I the step is one of Cam Clay
+with M(I) and p_c(I) (`cam_clay_step`, exact and bracketed), and gives back a plastic shear, so an inertial number. A
+larger assumed I makes a larger surface, so less plastic shear: what is found falls while what is assumed rises. The one
+root is found by the secant method, begun at the I of the step before, with bisection wherever that leaves its bracket.
+
+Grains carry no tension: opened points keep a gap, as in `modified_cam_clay`.
+
+Source: (1)-(4) as published with the HydraxMPM code, Lubbe et al. (2026), and the idea of mu(I)-MCC in Blatny et al.
+(2024); flow rule, (7) and integration are this project's.
+Conventions: tensors tension-positive; p, eps_v compression-positive; q = sqrt(3/2 s:s); gamma_dot = sqrt(1/2 D_d:D_d),
+so I_M and I_v belong to half of the engineering rate (`own_inertial_number_constant` converts literature values).
+Valid from rest to dense flow, I below 1; beyond, collisions carry stress that (3) does not know.
+"""
+
+import math
+from typing import Annotated, Any, NamedTuple
+
+from materials import (
+    CamClay,
+    CamClayStep,
+    Law,
+    Parameter,
+    ParameterSet,
+    StateVariable,
+    SymmetricTensor,
+    after_closing,
+    assembled_stress,
+    cam_clay_step,
+    deviator,
+    deviatoric_stress,
+    hookimpl,
+    inertial_number,
+    isotropic,
+    longitudinal_wave_speed,
+    own_inertial_number_constant,
+    pointwise,
+    pressure,
+    scaled,
+    shear_modulus,
+    volumetric_strain_rate,
+)
+
+# The last move of the yield surface, relative; the secant method leaves its square.
+TOLERANCE = 1e-8
+MAXIMUM_ITERATIONS = 200
+# exp of this is beyond any pressure, and its square still a number.
+LARGEST_EXPONENT = 300.0
+
+
+class Parameters(NamedTuple):
+    """Material constants."""
+
+    critical_state_ratio: Annotated[float, Parameter("1", "slope M_csl = q/p of slow steady shear", "(0, inf)")]
+    dynamic_state_ratio: Annotated[float, Parameter("1", "slope M_inf = q/p of fast steady shear", "(0, inf)")]
+    friction_inertial_number: Annotated[
+        float, Parameter("1", "I_M, where q/p is halfway from M_csl to M_inf; for sqrt(1/2 D_d:D_d)", "(0, inf)")
+    ]
+    dilation_inertial_number: Annotated[
+        float,
+        Parameter("1", "I_v, over which the steady specific volume grows by e; for sqrt(1/2 D_d:D_d)", "(0, inf)"),
+    ]
+    compression_index: Annotated[
+        float, Parameter("1", "slope lambda of isotropic compression in ln v - ln p; larger than kappa", "(0, inf)")
+    ]
+    swelling_index: Annotated[float, Parameter("1", "slope kappa of swelling in ln v - ln p", "(0, inf)")]
+    poisson_ratio: Annotated[float, Parameter("1", "Poisson's ratio nu", "(-1, 0.5)")]
+    overconsolidation_ratio: Annotated[
+        float,
+        Parameter("1", "OCR: size of the initial yield surface over the one through the initial stress", "[1, inf)"),
+    ]
+    grain_density: Annotated[float, Parameter("kg/m3", "density rho_p of the grains", "(0, inf)")]
+    grain_diameter: Annotated[float, Parameter("m", "diameter d_p of the grains", "(0, inf)")]
+    stress_free_pressure: Annotated[
+        float, Parameter("Pa", "pressure below which grains are taken to lose contact", "(0, inf)")
+    ] = 1.0
+
+
+class State(NamedTuple):
+    """What a point remembers."""
+
+    preconsolidation_pressure: Annotated[float, StateVariable("Pa", "size p_c0 of the yield surface at rest")]
+    gap: Annotated[float, StateVariable("1", "volumetric strain beyond the stress-free state; 0 while in contact")]
+    inertial_number: Annotated[float, StateVariable("1", "plastic inertial number I of the last step")]
+
+
+class Increment(NamedTuple):
+    """A step in contact, before I is known."""
+
+    start_pressure: float
+    start_deviator: SymmetricTensor
+    compression: float
+    shear: SymmetricTensor
+    size_at_rest: float
+    dt: float
+
+
+class Flow(NamedTuple):
+    """A step with the surface of an assumed inertial number, and the inertial number of its plastic strain."""
+
+    end: CamClayStep
+    assumed: float
+    found: float
+
+
+def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
+    """At rest: the yield surface through the initial stress, times OCR; without stress, at the edge of contact."""
+    p = max(pressure(stress), parameters.stress_free_pressure)
+    ratio = deviatoric_stress(stress) / (parameters.critical_state_ratio * p)
+    through_stress = max(p * (1.0 + ratio * ratio), 2.0 * parameters.stress_free_pressure)
+    return State(parameters.overconsolidation_ratio * through_stress, 0.0, 0.0)
+
+
+def update(
+    stress: SymmetricTensor,
+    strain_rate: SymmetricTensor,
+    density: float,
+    state: State,
+    parameters: Parameters,
+    dt: float,
+) -> tuple[SymmetricTensor, State]:
+    """Close the gap if there is one, then the step with its own inertial number, and opening."""
+    contact = after_closing(volumetric_strain_rate(strain_rate) * dt, scaled(deviator(strain_rate), dt), state.gap)
+    if contact.gap > 0.0:
+        return isotropic(0.0), State(state.preconsolidation_pressure, contact.gap, 0.0)
+
+    smallest = parameters.stress_free_pressure
+    increment = Increment(
+        max(pressure(stress), smallest),
+        deviator(stress),
+        contact.compression,
+        contact.shear,
+        state.preconsolidation_pressure,
+        dt,
+    )
+    flow = consistent_flow(increment, state.inertial_number, parameters)
+    end = flow.end
+    size_at_rest = max(end.preconsolidation_pressure, 2.0 * smallest) / growth_of_surface(flow.assumed, parameters)
+    if end.mean_pressure < smallest:
+        gap = parameters.swelling_index * math.log(smallest / end.mean_pressure)
+        return isotropic(0.0), State(size_at_rest, gap, 0.0)
+    return assembled_stress(end.mean_pressure, end.deviator), State(size_at_rest, 0.0, flow.found)
+
+
+@pointwise
+def consistent_flow(increment: Increment, guess: float, parameters: Parameters) -> Flow:
+    """The step whose plastic strain has the inertial number of its yield surface; NaN if the search does not end."""
+    tolerance = TOLERANCE * sensitive_inertial_number(parameters)
+    flow = flow_at(guess, increment, parameters)
+    slope = slope_of_found(flow, increment, parameters)
+    lower, upper = -1.0, math.inf
+    for _ in range(MAXIMUM_ITERATIONS):
+        excess = flow.found - flow.assumed
+        if excess == 0.0:
+            return flow
+        if excess > 0.0:
+            lower = flow.assumed
+        else:
+            upper = flow.assumed
+        trial = flow.assumed + excess / (1.0 - slope)
+        if flow.found == 0.0:
+            # On an elastic step the slope says nothing; the point may not flow at all.
+            trial = 0.0 if lower < 0.0 else 0.5 * (lower + upper)
+        elif not lower < trial < upper:
+            trial = 0.5 * (max(lower, 0.0) + upper)
+        new = flow_at(trial, increment, parameters)
+        if abs(trial - flow.assumed) <= tolerance:
+            return new
+        stalled = abs(new.found - new.assumed) > 0.5 * abs(excess) and upper < math.inf
+        # Without a slope the next trial leaves the bracket, which is then halved.
+        slope = -math.inf if stalled else min(0.0, (new.found - flow.found) / (new.assumed - flow.assumed))
+        flow = new
+    return flow_at(math.nan, increment, parameters)
+
+
+@pointwise
+def flow_at(assumed: float, increment: Increment, parameters: Parameters) -> Flow:
+    """The Cam Clay step with the surface that belongs to an inertial number."""
+    end = cam_clay_step(
+        increment.start_pressure,
+        increment.start_deviator,
+        increment.compression,
+        increment.shear,
+        increment.size_at_rest * growth_of_surface(assumed, parameters),
+        CamClay(
+            steady_stress_ratio(assumed, parameters),
+            parameters.compression_index,
+            parameters.swelling_index,
+            parameters.poisson_ratio,
+        ),
+    )
+    rate = end.plastic_shear / increment.dt
+    found = inertial_number(rate, end.mean_pressure, parameters.grain_diameter, parameters.grain_density)
+    return Flow(end, assumed, found)
+
+
+@pointwise
+def steady_stress_ratio(number: float, parameters: Parameters) -> float:
+    """M(I) = M_csl M_I (Eq. 2)."""
+    slow = parameters.critical_state_ratio
+    return slow + (parameters.dynamic_state_ratio - slow) * number / (parameters.friction_inertial_number + number)
+
+
+@pointwise
+def growth_of_surface(number: float, parameters: Parameters) -> float:
+    """p_c/p_c0 (Eq. 7)."""
+    plastic_index = parameters.compression_index - parameters.swelling_index
+    return math.exp(min(number / (parameters.dilation_inertial_number * plastic_index), LARGEST_EXPONENT))
+
+
+@pointwise
+def sensitive_inertial_number(parameters: Parameters) -> float:
+    """The inertial number over which the surface changes by about its own size."""
+    plastic_index = parameters.compression_index - parameters.swelling_index
+    return min(parameters.dilation_inertial_number * plastic_index, parameters.friction_inertial_number)
+
+
+@pointwise
+def slope_of_found(flow: Flow, increment: Increment, parameters: Parameters) -> float:
+    """Derivative of the found with respect to the assumed inertial number, for a small step; where to try next.
+
+    Moving the surface by dF/dI changes the multiplier by (dF/dI)/(K F_p^2 + 3 G F_q^2 + H), H from hardening.
+    """
+    p, p_c = flow.end.mean_pressure, flow.end.preconsolidation_pressure
+    m = steady_stress_ratio(flow.assumed, parameters)
+    plastic_index = parameters.compression_index - parameters.swelling_index
+    constant = parameters.friction_inertial_number
+    m_slope = (parameters.dynamic_state_ratio - parameters.critical_state_ratio) * constant
+    m_slope /= (constant + flow.assumed) * (constant + flow.assumed)
+    q_squared = max(0.0, m * m * p * (p_c - p))
+
+    f_p, f_q = 2.0 * p - p_c, 2.0 * math.sqrt(q_squared) / (m * m)
+    f_i = -2.0 * q_squared * m_slope / (m * m * m) - p * p_c / (parameters.dilation_inertial_number * plastic_index)
+    bulk_modulus = p / parameters.swelling_index
+    stiffness = bulk_modulus * f_p * f_p + p * p_c * f_p / plastic_index
+    stiffness += 3.0 * shear_modulus(bulk_modulus, parameters.poisson_ratio) * f_q * f_q
+    if not stiffness > 0.0:
+        return 0.0
+    rate = 0.5 * math.sqrt(3.0) * f_q * f_i / stiffness / increment.dt
+    return inertial_number(rate, p, parameters.grain_diameter, parameters.grain_density)
+
+
+def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Speed of longitudinal elastic waves at the present pressure; zero where the point is open."""
+    bulk_modulus = max(0.0, pressure(stress)) / parameters.swelling_index
+    return longitudinal_wave_speed(bulk_modulus, shear_modulus(bulk_modulus, parameters.poisson_ratio), density)
+
+
+def contradiction(parameters: Parameters) -> str:
+    """Compression has to be softer than swelling, and friction may not fall with the shear rate."""
+    if parameters.compression_index <= parameters.swelling_index:
+        return (
+            f"compression_index = {parameters.compression_index:g} must be larger than "
+            f"swelling_index = {parameters.swelling_index:g}"
+        )
+    if parameters.dynamic_state_ratio < parameters.critical_state_ratio:
+        return (
+            f"dynamic_state_ratio = {parameters.dynamic_state_ratio:g} must not be smaller than "
+            f"critical_state_ratio = {parameters.critical_state_ratio:g}"
+        )
+    return ""
+
+
+def density_on_compression_line(mean_pressure: float, parameters: Parameters) -> float:
+    """Bulk density [kg/m3] at rest on the lines of `modified_cam_clay`: ln v = 0.021 - lambda ln(p/1 Pa), swelling."""
+    ocr = parameters.overconsolidation_ratio
+    log_volume = 0.021 - parameters.compression_index * math.log(ocr * mean_pressure)
+    log_volume += parameters.swelling_index * math.log(ocr)
+    return parameters.grain_density / math.exp(log_volume)
+
+
+PAPER = Parameters(
+    critical_state_ratio=1.20,
+    dynamic_state_ratio=2.16,
+    friction_inertial_number=0.279,
+    dilation_inertial_number=own_inertial_number_constant(0.5434 / 0.115),
+    compression_index=0.040,
+    swelling_index=0.008,
+    poisson_ratio=0.2,
+    overconsolidation_ratio=1.0,
+    grain_density=2450.0,
+    grain_diameter=0.005,
+)
+SOURCE = (
+    "Table 1 of the paper behind both parents, I_M = I_0; I_v from sheared discrete elements, phi = 0.5434 - 0.115 I"
+)
+
+LAW = Law(
+    name="mu_i_mcc",
+    summary="mu(I)-MCC, the unified law: Cam Clay with an inertial-number-dependent critical state",
+    parameters=Parameters,
+    state=State,
+    initial_state=initial_state,
+    update=update,
+    sound_speed=sound_speed,
+    contradiction=contradiction,
+    parameter_sets={
+        "paper": ParameterSet(PAPER, f"{SOURCE}; OCR = 1", density_on_compression_line),
+        "paper_ocr4": ParameterSet(
+            PAPER._replace(overconsolidation_ratio=4.0), f"{SOURCE}; OCR = 4", density_on_compression_line
+        ),
+    },
+)
+
+
+@hookimpl
+def grainlaw_materials() -> list[Any]:
+    """Register this law."""
+    return [LAW]
