@@ -1,4 +1,4 @@
-"""The coordinates in which parameters are fitted: without dimension, and logarithmic where every positive value is allowed."""
+"""The coordinates in which parameters are fitted: no dimension, logarithmic where every positive value is allowed."""
 
 import math
 from dataclasses import dataclass

@@ -5,9 +5,9 @@
     axial_strain [1],deviatoric_stress [Pa],standard_error_deviatoric_stress [Pa],volumetric_strain [1]
     0.01,81e3,2e3,0.004
 
-A line `# name = value` before the header states the test, one of its settings or a parameter of the law, in SI units; other
-lines that begin with # are remarks. The same names may head columns instead: rows that agree in them form one test each.
-One column drives the test (`experiments`), the others were measured (`quantities`); an empty cell was not measured.
+A line `# name = value` before the header states the test, one of its settings or a parameter of the law, in SI units;
+other lines that begin with # are remarks. The same names may head columns instead: rows that agree in them form one
+test each. One column drives the test (`experiments`), the others were measured (`quantities`); cells may be empty.
 """
 
 import csv
@@ -37,7 +37,7 @@ _HEADING = re.compile(r"\s*(\w+)\s*(?:\[([^\]]*)\])?\s*")
 
 @dataclass(frozen=True)
 class Measured:
-    """A measured column: values and standard errors, shape (rows,); NaN where nothing was measured, no errors if unknown."""
+    """A measured column: values and their standard errors if known, shape (rows,); NaN where nothing was measured."""
 
     name: str
     values: Array
@@ -95,8 +95,7 @@ def read_data(path: Path, law: Law) -> list[DataSet]:
 
 def _is_statement(name: str, law: Law) -> bool:
     settings = {key for experiment in EXPERIMENTS.values() for key in experiment.settings._fields}
-    of_rows = set(QUANTITIES) | {key for experiment in EXPERIMENTS.values() for key in experiment.controls}
-    return name in (settings | set(law.parameter_declarations)) - of_rows
+    return name in settings or name in law.parameter_declarations
 
 
 def _read_table(path: Path) -> _Table:
@@ -105,15 +104,17 @@ def _read_table(path: Path) -> _Table:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"data file {path} cannot be read: {error}") from error
-    for number, cells in zip(range(1, len(lines) + 1), csv.reader(lines), strict=True):
-        line = lines[number - 1]
+    for number, line in enumerate(lines, start=1):
         if line.startswith("#"):
-            statement = _STATEMENT.fullmatch(line)
+            # A spreadsheet pads short lines with commas.
+            statement = _STATEMENT.fullmatch(line.rstrip(", "))
             if statement and not table.names:
                 table.statements[statement[1]] = statement[2]
-        elif not any(cell.strip() for cell in cells):
             continue
-        elif not table.names:
+        cells = next(csv.reader([line]), [])
+        if not any(cell.strip() for cell in cells):
+            continue
+        if not table.names:
             _read_header(table, cells, number)
         elif len(cells) != len(table.names):
             raise table.fault(f"{len(cells)} cells under {len(table.names)} headings", number)

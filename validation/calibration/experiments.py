@@ -55,11 +55,13 @@ class StrainedDataSettings(NamedTuple):
 class SteadyShearSettings(NamedTuple):
     """Settings of steady shear at held normal stress."""
 
-    normal_stress: Annotated[float, Parameter("Pa", "held compressive stress on the plane of shear", "(0, inf)")] = 1e3
+    held_normal_stress: Annotated[
+        float, Parameter("Pa", "held compressive stress on the plane of shear", "(0, inf)")
+    ] = 1e3
     density: InitialDensity = 0.0
     grain_density: GrainDensity = 2450.0
     grain_diameter: GrainDiameter = 0.005
-    shear_strain: Annotated[
+    strain_to_steady: Annotated[
         float, Parameter("1", "strain eps_xy at each inertial number, to become steady", "(0, inf)")
     ] = 3.0
     strain_step: StrainStep = 2e-3
@@ -140,21 +142,21 @@ def _strained(name: str, controls: Mapping[str, Control]) -> Experiment:
 
 def steady_shear(specimen: Specimen, settings: SteadyShearSettings, numbers: Array) -> ElementResult:
     """The steady state at each inertial number, one after the other. Raises SimulationError where it is not steady."""
-    stress = isotropic(-settings.normal_stress)
-    density = specimen.density(settings.normal_stress, settings.density)
+    stress = isotropic(-settings.held_normal_stress)
+    density = specimen.density(settings.held_normal_stress, settings.density)
     start = point_at_rest(stress, density, specimen.law.initial_state(stress, density, specimen.parameters))
-    unit_number = inertial_number(1.0, settings.normal_stress, settings.grain_diameter, settings.grain_density)
-    half = math.ceil(0.5 * settings.shear_strain / settings.strain_step)
+    unit_number = inertial_number(1.0, settings.held_normal_stress, settings.grain_diameter, settings.grain_density)
+    half = math.ceil(0.5 * settings.strain_to_steady / settings.strain_step)
     points = [start]
     for number in numbers:
         rate = float(number) / unit_number
         path = LoadingPath(
-            dt=0.5 * settings.shear_strain / half / rate,
+            dt=0.5 * settings.strain_to_steady / half / rate,
             rates=np.full(2 * half, rate),
             direction=SHEAR,
             free=NORMAL,
             held=NORMAL,
-            target=settings.normal_stress,
+            target=settings.held_normal_stress,
             held_name="normal stress",
         )
         halfway, end = follow_path(specimen, path, points[-1], half)
@@ -164,11 +166,11 @@ def steady_shear(specimen: Specimen, settings: SteadyShearSettings, numbers: Arr
 
 
 def _check_steady(specimen: Specimen, settings: SteadyShearSettings, halfway: Point, end: Point, number: float) -> None:
-    change = abs(end.stress.xy - halfway.stress.xy) / settings.normal_stress
+    change = abs(end.stress.xy - halfway.stress.xy) / settings.held_normal_stress
     if not change <= STEADY:
         raise SimulationError(
-            f"{specimen.law.name}: shear at I = {number:g} is not steady after a strain of {settings.shear_strain:g} (the "
-            f"friction still changes by {change:.2g}); state a larger shear_strain in the data file"
+            f"{specimen.law.name}: shear at I = {number:g} is not steady after eps_xy = {settings.strain_to_steady:g} "
+            f"(the friction still changes by {change:.2g}); state a larger strain_to_steady in the data file"
         )
 
 

@@ -25,7 +25,7 @@ def parameter_file(findings: Findings) -> str:
     """All parameters of the law as TOML, each with the interval that it was found in."""
     fit = findings.fit
     files = ", ".join(data.label for data in fit.model.data)
-    notes = {name: "not fitted" for name in fit.values}
+    notes = dict.fromkeys(fit.values, "not fitted")
     for found in findings.estimates:
         doubt = "" if found.determined else ", NOT DETERMINED by the data"
         notes[found.name] = f"95 %: {found.lower:.6g} to {found.upper:.6g}{doubt}"

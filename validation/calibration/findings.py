@@ -1,10 +1,10 @@
 """What a fit says about the parameters: estimates, 95 % intervals, correlations, and in words what is not determined.
 
 At the solution the residuals r are taken as linear in the coordinates u, with Jacobian J. The covariance of u is then
-(J^T J)^-1, times s^2 = |r|^2/(measurements - parameters) where the data come without standard errors. Intervals are those
-of the normal or, with s^2, of Student's distribution. A parameter is determined if its interval reaches no further than a
-factor 2 from the estimate (half of it, or a tenth of the width of its bounds, where u is linear). With J in units of this
-reach, its singular vectors with singular values below the quantile are the combinations that the data do not determine.
+(J^T J)^-1, times s^2 = |r|^2/(measurements - parameters) where the data come without standard errors. Intervals are
+those of the normal or, with s^2, of Student's distribution. A parameter is determined if its interval reaches no
+further than a factor 2 from the estimate (half of it, or a tenth of the width of its bounds, where u is linear). With J
+in units of this reach, singular values below the quantile belong to combinations that the data do not determine.
 
 Source: Seber & Wild (1989), Nonlinear Regression, chapters 2 and 5.
 """
@@ -70,7 +70,7 @@ class Findings:
 
     @cached_property
     def _combined(self) -> tuple[Array, Array]:
-        """Standard deviations along the singular vectors of the scaled Jacobian, ascending, and these vectors as rows."""
+        """Standard deviations along the singular vectors of the scaled Jacobian, ascending, and these vectors."""
         _, values, vectors = np.linalg.svd(self.fit.jacobian * self.reach, full_matrices=False)
         noise = 1.0 if self.fit.model.knows_errors else math.sqrt(self.misfit / self.freedom)
         return noise / np.maximum(values, SMALLEST_SINGULAR_VALUE * max(float(values[0]), 1e-300)), vectors

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 DIFFERENCE = 1e-4
 # Of the sum of squares: an estimate is then within a thousandth of its standard deviation.
 TOLERANCE = 1e-7
-# Change of all residuals together as a parameter changes by its own size, in standard errors or, without them, relative.
+# Change of all residuals as a parameter changes by its own size: in standard errors (True) or, without them, relative.
 SMALLEST_EFFECT = {True: 1e-3, False: 1e-5}
 
 
