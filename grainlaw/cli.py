@@ -7,9 +7,11 @@ from typing import Annotated
 import typer
 
 from grainlaw.calibrate_command import calibrate
+from grainlaw.check_command import check
 from grainlaw.compare_command import compare
 from grainlaw.element_command import element
 from grainlaw.materials_command import materials
+from grainlaw.new_law_command import new_law
 from grainlaw.plan_command import plan
 from grainlaw.run_command import run
 from grainlaw.validate_command import validate
@@ -30,6 +32,8 @@ app.command("run")(run)
 app.command("plan")(plan)
 app.command("compare")(compare)
 app.command("validate")(validate)
+app.command("new-law")(new_law)
+app.command("check")(check)
 
 
 def _print_version(wanted: bool) -> None:

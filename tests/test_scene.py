@@ -84,7 +84,7 @@ def test_a_material_takes_what_it_does_not_state_from_its_parameter_file(tmp_pat
     folder.mkdir()
     (folder / "fitted.toml").write_text("bulk_modulus = 2e5\npoisson_ratio = 0.1\n")
     material = {"linear_elastic": {"parameters": "fitted.toml", "poisson_ratio": 0.3}}
-    path = write_scene(folder, changed(BLOCK, {"material": material}))
+    path = write_scene(folder / "scene.toml", changed(BLOCK, {"material": material}))
     resolved = Scene.load(path).parameters("linear_elastic")
     assert (resolved.bulk_modulus, resolved.poisson_ratio) == (2e5, 0.3)
     stiffer = Scene.load(path, {"material.linear_elastic.bulk_modulus": 3e5})
