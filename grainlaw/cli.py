@@ -6,9 +6,12 @@ from typing import Annotated
 
 import typer
 
+from grainlaw.calibrate_command import calibrate
+from grainlaw.check_command import check
 from grainlaw.compare_command import compare
 from grainlaw.element_command import element
 from grainlaw.materials_command import materials
+from grainlaw.new_law_command import new_law
 from grainlaw.plan_command import plan
 from grainlaw.run_command import run
 from grainlaw.validate_command import validate
@@ -24,10 +27,13 @@ app = typer.Typer(
 # A command's module imports what it needs inside its function, so that no command pays for another's libraries.
 app.command("materials")(materials)
 app.command("element")(element)
+app.command("calibrate")(calibrate)
 app.command("run")(run)
 app.command("plan")(plan)
 app.command("compare")(compare)
 app.command("validate")(validate)
+app.command("new-law")(new_law)
+app.command("check")(check)
 
 
 def _print_version(wanted: bool) -> None:

@@ -12,7 +12,10 @@ from materials.declarations import DeclarationError, Parameter, StateVariable, c
 from materials.errors import InputError
 from materials.tensor import SymmetricTensor, isotropic
 
+# The version of the interface between laws and grainlaw, and the oldest for which a law may have been written. The
+# version rises when a law can use something new, the oldest when a law written for an older one would go wrong.
 HOOK_VERSION = 1
+OLDEST_HOOK_VERSION = 1
 
 
 @dataclass(frozen=True)
@@ -28,7 +31,7 @@ def _no_contradiction(parameters: Any) -> str:
     return ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Law:
     """A constitutive law, declared once and used by the element tests, the MPM core, the output and the docs.
 
@@ -43,7 +46,8 @@ class Law:
     sound_speed     (stress, density, state, parameters) -> fastest wave speed [m/s]
     parameter_sets  named parameter sets, the first of which element tests take by default
     contradiction   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
-    hook_version    version of this interface that the law was written for
+    carries_tension whether the material may be pulled; a law of loose grains leaves it at False
+    hook_version    version of this interface that the law was written for; a law that does not say was for version 1
 
     The three functions take and return scalars and NamedTuples, call only `math` and functions marked with
     `pointwise`, and have no side effects.
@@ -58,7 +62,8 @@ class Law:
     sound_speed: Callable[[SymmetricTensor, float, Any, Any], float]
     parameter_sets: Mapping[str, ParameterSet] = field(default_factory=dict)
     contradiction: Callable[[Any], str] = _no_contradiction
-    hook_version: int = HOOK_VERSION
+    carries_tension: bool = False
+    hook_version: int = 1
 
     def checked(self, values: dict[str, Any], where: str) -> Any:
         """Parameters of this law from values by name; `where` names their place in messages. Raises InputError."""
@@ -96,14 +101,23 @@ def check_law(law: Law) -> None:
     """
     if not re.fullmatch(r"[a-z][a-z0-9_]*", law.name):
         raise DeclarationError(f"the name '{law.name}' is not lower_case_with_underscores")
-    if law.hook_version != HOOK_VERSION:
-        raise DeclarationError(f"written for hook version {law.hook_version}; this grainlaw has {HOOK_VERSION}")
+    _check_hook_version(law.hook_version)
     if not law.summary.strip():
         raise DeclarationError("no summary")
     declared_fields(law.parameters, Parameter)
     declared_fields(law.state, StateVariable)
     for name, parameter_set in law.parameter_sets.items():
         _check_one_step(law, name, parameter_set)
+
+
+def _check_hook_version(written_for: int) -> None:
+    understood = f"this grainlaw understands {OLDEST_HOOK_VERSION} to {HOOK_VERSION}"
+    if written_for > HOOK_VERSION:
+        raise DeclarationError(f"written for hook version {written_for}; {understood}: it needs a newer grainlaw")
+    if written_for < OLDEST_HOOK_VERSION:
+        raise DeclarationError(
+            f"written for hook version {written_for}; {understood}: the law has to be brought up to date"
+        )
 
 
 def _check_one_step(law: Law, name: str, parameter_set: ParameterSet) -> None:

@@ -69,6 +69,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    carries_tension=True,
     parameter_sets={
         "soft_solid": ParameterSet(
             Parameters(bulk_modulus=1000.0 / (3.0 * (1.0 - 2.0 * 0.3)), poisson_ratio=0.3),
