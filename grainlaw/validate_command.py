@@ -15,7 +15,10 @@ WIDTH = 140
 
 def validate(
     names: Annotated[
-        list[str] | None, typer.Argument(metavar="[CASE]...", help="Cases to run; default: all.", show_default=False)
+        list[str] | None,
+        typer.Argument(
+            metavar="[CASE]...", help="Cases or suites to run; default: the suite standard.", show_default=False
+        ),
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Coarse and short, for every change.")] = False,
     out: Annotated[
@@ -76,8 +79,8 @@ def _print_results(results: "Sequence[CaseResult]") -> None:
 
     table = Table(box=box.SIMPLE_HEAD)
     table.add_column("case", no_wrap=True)
-    table.add_column("verdict")
-    table.add_column("decisive measurement", no_wrap=True)
+    table.add_column("verdict", no_wrap=True)
+    table.add_column("decisive measurement", overflow="fold")
     for heading in ("error", "band", "control", "order", "wall [s]"):
         table.add_column(heading, justify="right", no_wrap=True)
     for result in results:

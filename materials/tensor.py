@@ -52,6 +52,34 @@ def contraction(a: SymmetricTensor, b: SymmetricTensor) -> float:
 
 
 @pointwise
+def congruent(a: SymmetricTensor, b: SymmetricTensor) -> SymmetricTensor:
+    """A b a, which is symmetric; with b = 1 the square of a."""
+    xx = a.xx * b.xx + a.xy * b.xy + a.xz * b.xz
+    xy = a.xx * b.xy + a.xy * b.yy + a.xz * b.yz
+    xz = a.xx * b.xz + a.xy * b.yz + a.xz * b.zz
+    yx = a.xy * b.xx + a.yy * b.xy + a.yz * b.xz
+    yy = a.xy * b.xy + a.yy * b.yy + a.yz * b.yz
+    yz = a.xy * b.xz + a.yy * b.yz + a.yz * b.zz
+    zx = a.xz * b.xx + a.yz * b.xy + a.zz * b.xz
+    zy = a.xz * b.xy + a.yz * b.yy + a.zz * b.yz
+    zz = a.xz * b.xz + a.yz * b.yz + a.zz * b.zz
+    return SymmetricTensor(
+        xx * a.xx + xy * a.xy + xz * a.xz,
+        yx * a.xy + yy * a.yy + yz * a.yz,
+        zx * a.xz + zy * a.yz + zz * a.zz,
+        xx * a.xy + xy * a.yy + xz * a.yz,
+        yx * a.xz + yy * a.yz + yz * a.zz,
+        xx * a.xz + xy * a.yz + xz * a.zz,
+    )
+
+
+@pointwise
+def determinant(a: SymmetricTensor) -> float:
+    """det(a)."""
+    return a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.xz) + a.xz * (a.xy * a.yz - a.yy * a.xz)
+
+
+@pointwise
 def deviator(a: SymmetricTensor) -> SymmetricTensor:
     """A - tr(a)/3 1."""
     mean = trace(a) / 3.0

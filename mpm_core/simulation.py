@@ -10,10 +10,12 @@ from materials import SimulationError
 from mpm_core import momentum
 from mpm_core.basis import BASES
 from mpm_core.body import Body
+from mpm_core.body_force import BodyForce, scatter_body_force
 from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, join_periodic
 from mpm_core.columns import LXX, LYY, X, Y
 from mpm_core.fields import chosen_fields
 from mpm_core.grid import Grid, Window
+from mpm_core.held_nodes import hold_nodes
 from mpm_core.initial import build_bodies
 from mpm_core.scene import Scene
 from mpm_core.sorting import LONGEST_DRIFT
@@ -53,6 +55,8 @@ class Ledger:
 class Simulation:
     """Bodies, grid and walls of a scene, and the clock.
 
+    What a program may set besides the scene: `body_force`, which acts besides gravity, and `held_nodes`, where the
+    material is held. Their work is no part of the ledger.
     Raises InputError for a scene that cannot be built and for a law that does not compile.
     """
 
@@ -70,6 +74,8 @@ class Simulation:
             body.choose_kernels(self.basis, keeps_shear_strain="shear_strain" in self.fields)
         self.build_time = time.perf_counter() - started
         self.walls = _walls(scene)
+        self.body_force: BodyForce | None = None
+        self.held_nodes = np.empty(0, np.int64)
         self.time = 0.0
         self.steps = 0
         self.drift = math.inf
@@ -87,11 +93,14 @@ class Simulation:
         momentum.clear(grid, window)
         for body in self.bodies:
             body.to_grid(grid)
+            if self.body_force is not None:
+                scatter_body_force(body, self.body_force(body, self.time), grid, self.basis)
         for axis in self.periodic_axes:
             join_periodic(grid.nodes, grid, axis)
         momentum.update_velocities(grid, window, self.scene.gravity, dt)
         for wall in self.walls:
             self.ledger.wall_work += hold_at_wall(grid, wall, window)
+        hold_nodes(grid, self.held_nodes)
         for body in self.bodies:
             body.from_grid(grid, dt, self._memory(dt))
         for body in self.bodies:

@@ -1,4 +1,4 @@
-"""The validation cases by name, in the order in which they are run: from one point to whole scenes."""
+"""The validation cases by name, in suites, each in the order in which it is run."""
 
 from collections.abc import Sequence
 from importlib import import_module
@@ -6,35 +6,43 @@ from importlib import import_module
 from materials.errors import InputError, nearest_name
 from validation.case import Case
 
-NAMES = (
-    "simple_shear",
-    "mcc_triaxial_drained",
-    "mcc_triaxial_undrained",
-    "mcc_one_dimensional_compression",
-    "return_mapping",
-    "opening_and_closing",
-    "rigid_rotation",
-    "elastic_bar_vibration",
-    "self_weight_column",
-    "sliding_block",
-    "two_discs",
-    "poiseuille",
-    "bagnold_incline",
-    "mirror_symmetry",
-    "shifted_column",
-    "rest",
-    "time_step_independence",
-)
+STANDARD = "standard"
+# From one point to whole scenes.
+SUITES: dict[str, tuple[str, ...]] = {
+    STANDARD: (
+        "simple_shear",
+        "mcc_triaxial_drained",
+        "mcc_triaxial_undrained",
+        "mcc_one_dimensional_compression",
+        "return_mapping",
+        "opening_and_closing",
+        "rigid_rotation",
+        "elastic_bar_vibration",
+        "axis_aligned_solution",
+        "generalised_vortex",
+        "self_weight_column",
+        "sliding_block",
+        "two_discs",
+        "poiseuille",
+        "bagnold_incline",
+        "mirror_symmetry",
+        "shifted_column",
+        "rest",
+        "time_step_independence",
+    ),
+}
+NAMES = tuple(name for suite in SUITES.values() for name in suite)
 
 
 def get_case(name: str) -> Case:
     """The case of that name, from its module. Raises InputError with the nearest valid name."""
     if name not in NAMES:
-        raise InputError(f"unknown validation case '{name}'; {nearest_name(name, NAMES)}")
+        raise InputError(f"unknown validation case or suite '{name}'; {nearest_name(name, [*NAMES, *SUITES])}")
     case: Case = import_module(f"validation.cases.{name}").CASE
     return case
 
 
 def chosen_cases(names: Sequence[str]) -> list[Case]:
-    """The cases of these names, or all of them."""
-    return [get_case(name) for name in names or NAMES]
+    """The cases of these names, a suite standing for its cases; without names, the standard suite."""
+    chosen = [case for name in names or (STANDARD,) for case in SUITES.get(name, (name,))]
+    return [get_case(name) for name in dict.fromkeys(chosen)]
