@@ -1,6 +1,7 @@
 # make demo    set up, run the paper's column collapse with three materials on a coarse grid, compare them
 # make test    set up, run the tests
 # make lint    set up, check style and types
+# make bench   set up, time the library against a yardstick and the machine; about half an hour
 # make docs    set up, write the generated parts of docs/ from the declarations
 
 PYTHON ?= python3
@@ -11,7 +12,7 @@ INSTALLED := $(VENV)/.installed
 DEMO := runs/demo
 MATERIALS := mu_i_lc mcc_ocr1 mcc_ocr4
 
-.PHONY: demo test lint docs
+.PHONY: demo test lint docs bench
 
 $(INSTALLED): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and \
@@ -37,6 +38,9 @@ lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+bench: $(INSTALLED)
+	$(BIN)/python -m benchmarks $(PARTS)
 
 docs: $(INSTALLED)
 	$(BIN)/python -m grainlaw.reference docs

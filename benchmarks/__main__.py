@@ -1,0 +1,148 @@
+"""`python -m benchmarks`: measure everything in one run on one machine, print it and store it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from benchmarks.columns import cell_size_for, moving_column
+from benchmarks.machine import machine_description
+from benchmarks.memory import memory_per_point
+from benchmarks.passes import pass_times
+from benchmarks.race import race
+from benchmarks.report import Table, print_table, write
+from benchmarks.roofline import Roofline, measured_roofline
+from benchmarks.sizes import cost_over_domain, cost_over_size
+from benchmarks.tables import (
+    domain_table,
+    machine_table,
+    memory_table,
+    pass_table,
+    race_table,
+    roofline_table,
+    size_table,
+)
+from mpm_core.threads import usable_threads
+from validation.collapses import SCENES
+
+
+class Part(StrEnum):
+    """What can be measured by itself."""
+
+    PASSES = "passes"
+    YARDSTICK = "yardstick"
+    SIZES = "sizes"
+    DOMAIN = "domain"
+    MEMORY = "memory"
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How large and how long: cell size [m] and end [s] of the race, points of the other parts, rounds."""
+
+    cell_size: float
+    end: float
+    sizes: tuple[float, ...]
+    rounds: int
+    pass_steps: int
+    working_sets: tuple[int, ...]
+
+
+FULL = Effort(0.00625, 1.5, (1e4, 1e5, 4e5, 1.6e6, 4e6), 3, 300, (2**18, 2**20, 2**22, 2**24, 2**26, 3 * 2**28))
+QUICK = Effort(0.05, 0.02, (1e3, 4e3), 1, 20, (2**18, 2**24))
+
+
+@dataclass
+class Record:
+    """What has been measured, as numbers and as tables."""
+
+    numbers: dict[str, Any] = field(default_factory=dict)
+    tables: list[Table] = field(default_factory=list)
+
+    def add(self, part: str, numbers: Any, table: Table) -> None:
+        """Keep a result and print its table."""
+        self.numbers.setdefault(part, {})[table.title] = numbers
+        self.tables.append(table)
+        print_table(table)
+
+
+def main(
+    parts: Annotated[
+        list[Part] | None, typer.Argument(metavar="[PART]...", help="What to measure; default: all.")
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="So small that the numbers mean nothing.")] = False,
+    end: Annotated[float | None, typer.Option("--end", help="End of the race with the yardstick [s].")] = None,
+    cell_size: Annotated[float | None, typer.Option("--cell-size", help="Of the race and the passes [m].")] = None,
+    material: Annotated[list[str] | None, typer.Option("--material", help=f"Of {', '.join(SCENES)}.")] = None,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the results.")] = Path("runs/bench"),
+) -> None:
+    """Time the library: pass by pass against the roofline, against the yardstick, over size, domain and memory."""
+    chosen = QUICK if quick else FULL
+    effort = Effort(
+        cell_size or chosen.cell_size,
+        end or chosen.end,
+        chosen.sizes,
+        chosen.rounds,
+        chosen.pass_steps,
+        chosen.working_sets,
+    )
+    materials = material or list(SCENES)
+    record = Record()
+    machine = machine_description()
+    record.add("machine", machine, machine_table(machine))
+    roofline = measured_roofline(effort.working_sets)
+    record.add("roofline", roofline, roofline_table(roofline))
+    for part in parts or list(Part):
+        MEASURES[part](record, materials, effort, roofline)
+        write(out, record.numbers, record.tables)
+    for path in write(out, record.numbers, record.tables):
+        typer.echo(f"  {path}")
+
+
+def _passes(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+    for material in materials:
+        found = pass_times(moving_column(material, effort.cell_size), effort.pass_steps, roofline)
+        record.add("passes", found, pass_table(material, found))
+
+
+def _yardstick(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+    for material in materials:
+        found = race(material, effort.cell_size, effort.end, _threads())
+        record.add("yardstick", found, race_table(material, found))
+
+
+def _sizes(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+    for material in materials:
+        cell_sizes = [cell_size_for(points) for points in effort.sizes]
+        found = cost_over_size(material, cell_sizes, _threads(), effort.rounds)
+        record.add("sizes", found, size_table(material, found))
+
+
+def _domain(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+    found = cost_over_domain(materials[0], effort.cell_size, (1, 10), 5 * effort.rounds)
+    record.add("domain", found, domain_table(materials[0], found))
+
+
+def _memory(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+    largest, smallest = cell_size_for(effort.sizes[-1]), cell_size_for(effort.sizes[0])
+    found = {material: memory_per_point(material, largest, smallest) for material in materials}
+    record.add("memory", found, memory_table(found))
+
+
+def _threads() -> list[int]:
+    return [1, 2] if usable_threads(None) > 1 else [1]
+
+
+MEASURES: dict[Part, Callable[[Record, list[str], Effort, Roofline], None]] = {
+    Part.PASSES: _passes,
+    Part.YARDSTICK: _yardstick,
+    Part.SIZES: _sizes,
+    Part.DOMAIN: _domain,
+    Part.MEMORY: _memory,
+}
+
+if __name__ == "__main__":
+    typer.run(main)

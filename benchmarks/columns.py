@@ -1,0 +1,59 @@
+"""The paper's column as the benchmarks use it: at rest at the start, or set in motion so that every point yields."""
+
+from mpm_core.columns import LXX, LYY, VX, VY, X, Y
+from mpm_core.run import next_step
+from mpm_core.simulation import Simulation
+from mpm_core.threads import use_threads
+from validation.collapses import collapse
+
+# The rate [1/s] at which the column spreads and sinks: about the mean of a collapse that takes half a second.
+SPREADING_RATE = 2.0
+COLUMN_AREA = 0.3 * 0.9
+POINTS_PER_CELL = 4
+# A time [s] far beyond one step.
+AHEAD = 1.0
+
+
+def cell_size_for(points: int) -> float:
+    """A cell size [m] that divides the domain and gives about this many points."""
+    cells_per_metre = (points / POINTS_PER_CELL / COLUMN_AREA) ** 0.5
+    return 1.0 / (20 * max(1, round(cells_per_metre / 20)))
+
+
+def moving_column(material: str, cell_size: float, threads: int = 1, domain_factor: int = 1) -> Simulation:
+    """The column with a velocity field that stretches and lowers it without change of volume.
+
+    `domain_factor` enlarges the domain along both axes; the column stays where it is on the grid.
+    """
+    upper = [3.2 * domain_factor, 1.0 * domain_factor]
+    simulation = collapse(material, cell_size, {"grid.upper": upper})
+    simulation.threads = threads
+    body = simulation.bodies[0]
+    body.points[VX] = SPREADING_RATE * (body.points[X] - body.points[X].mean())
+    body.points[VY] = -SPREADING_RATE * body.points[Y]
+    body.points[LXX], body.points[LYY] = SPREADING_RATE, -SPREADING_RATE
+    return simulation
+
+
+def share_between(simulation: Simulation, threads: int) -> None:
+    """Go on with another number of threads."""
+    simulation.threads = threads
+    for body in simulation.bodies:
+        body.share_between(threads)
+
+
+def make_steps(simulation: Simulation, count: int) -> None:
+    """Take steps on the simulation's own number of threads."""
+    use_threads(simulation.threads)
+    for _ in range(count):
+        dt, _ = next_step(simulation, simulation.time + AHEAD)
+        simulation.step(dt)
+
+
+def advance_to(simulation: Simulation, target: float) -> None:
+    """Step to a time [s]."""
+    use_threads(simulation.threads)
+    while simulation.time < target:
+        dt, arrival = next_step(simulation, target)
+        simulation.step(dt)
+        simulation.time = simulation.time if arrival is None else arrival

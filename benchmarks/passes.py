@@ -1,0 +1,115 @@
+"""Where the time of a step goes, pass by pass, and how far from the roofline each pass is.
+
+The passes are timed from outside: for the time of the measurement, the functions that a step calls are replaced by ones
+that keep a clock. What is left of the step belongs to no pass: reports, reductions, Python.
+
+The floor of a pass is the larger of two times: its bytes at the bandwidth that a triad reaches on a working set as
+large as the points, and its operations at the arithmetic rate. Bytes are what the pass has to read and write of a
+point's columns; what it moves to and from the grid stays in the first caches and is not counted.
+"""
+
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from benchmarks.columns import make_steps
+from benchmarks.roofline import Roofline
+from mpm_core import momentum
+from mpm_core import simulation as stepping
+from mpm_core.body import Body
+from mpm_core.simulation import Simulation
+
+# Columns of a point that a pass reads and writes; of the stress pass without the law's state.
+COLUMNS_MOVED = {
+    # x, v, L, in-plane stress, density
+    "points to grid": 12,
+    # reads x, v; writes x, v, L, density around
+    "grid to points": 4 + 9,
+    # reads v, L, stress, density, density around; writes stress, density
+    "stress": 12 + 5,
+}
+STATE_PASSES = ("stress",)
+# Operations per point, for quadratic splines: weights, then nine nodes with their weight, affine values and sums.
+OPERATIONS = {
+    "points to grid": 50 + 3 * 12 + 9 * (1 + 4 * 2 + 6 * 2),
+    "grid to points": 60 + 9 * (1 + 2 + 2 + 7 * 2),
+}
+
+
+@dataclass(frozen=True)
+class PassTime:
+    """One pass: time per point and step [ns], its share of the step, floor [ns] and fraction of the roofline."""
+
+    name: str
+    nanoseconds: float
+    share: float
+    floor: float | None
+
+    @property
+    def fraction(self) -> float | None:
+        """The share of its time that the pass could not do without."""
+        return None if self.floor is None else self.floor / self.nanoseconds
+
+
+def pass_times(simulation: Simulation, steps: int, roofline: Roofline) -> list[PassTime]:
+    """Time the passes over some steps of a simulation of one body."""
+    make_steps(simulation, 3)
+    with _clocks(simulation) as seconds:
+        started = time.perf_counter()
+        make_steps(simulation, steps)
+        whole = time.perf_counter() - started
+    seconds["rest"] = whole - sum(seconds.values())
+    body = simulation.bodies[0]
+    per_point = 1e9 / (steps * body.count)
+    return [
+        PassTime(name, taken * per_point, taken / whole, _floor(name, body, roofline))
+        for name, taken in seconds.items()
+    ]
+
+
+def _floor(name: str, body: Body, roofline: Roofline) -> float | None:
+    if name not in COLUMNS_MOVED:
+        return None
+    columns = COLUMNS_MOVED[name] + (2 * len(body.law.state._fields) if name in STATE_PASSES else 0)
+    bytes_moved = columns * body.points.itemsize
+    moving = bytes_moved / roofline.bandwidth(body.points.nbytes)
+    return 1e9 * max(moving, OPERATIONS.get(name, 0) / roofline.arithmetic_rate)
+
+
+@contextmanager
+def _clocks(simulation: Simulation) -> "Iterator[dict[str, float]]":
+    """Clocks around the functions that a step calls; yields the seconds of each pass, which grow while it runs."""
+    places: list[tuple[Any, str, str]] = [
+        (momentum, "clear", "grid"),
+        (momentum, "update_velocities", "grid"),
+        (stepping, "hold_at_wall", "grid"),
+    ]
+    for body in simulation.bodies:
+        places += [
+            (body, "sort", "sorting"),
+            (body, "to_grid", "points to grid"),
+            (body, "from_grid", "grid to points"),
+            (body, "update_stress", "stress"),
+        ]
+    seconds: dict[str, float] = defaultdict(float)
+    originals = [getattr(owner, attribute) for owner, attribute, _ in places]
+    for (owner, attribute, name), original in zip(places, originals, strict=True):
+        setattr(owner, attribute, _with_clock(original, name, seconds))
+    try:
+        yield seconds
+    finally:
+        for (owner, attribute, _), original in zip(places, originals, strict=True):
+            setattr(owner, attribute, original)
+
+
+def _with_clock(function: Callable[..., Any], name: str, seconds: dict[str, float]) -> Callable[..., Any]:
+    def call(*arguments: Any, **keywords: Any) -> Any:
+        started = time.perf_counter()
+        result = function(*arguments, **keywords)
+        seconds[name] += time.perf_counter() - started
+        return result
+
+    return call

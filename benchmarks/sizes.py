@@ -1,0 +1,70 @@
+"""Cost of a point-step over the number of points and threads, and over the size of an empty domain."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from benchmarks.columns import make_steps, moving_column, share_between
+from benchmarks.timing import Duration, Spread, spread, taking_turns
+from mpm_core.simulation import Simulation
+
+# Enough for the points to be sorted at least once; so few that the column keeps its shape.
+FEWEST_STEPS, MOST_STEPS = 40, 200
+POINT_STEPS_PER_TURN = 4e6
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Time per point-step [ns] of a column on some threads, and the number of its points."""
+
+    points: int
+    threads: int
+    nanoseconds: Spread
+    cpu_nanoseconds: Spread
+
+
+def cost_over_size(material: str, cell_sizes: Sequence[float], threads: Sequence[int], rounds: int) -> list[Cost]:
+    """Columns of several cell sizes, all in each round."""
+    columns = {cell_size: moving_column(material, cell_size) for cell_size in cell_sizes}
+    for column in columns.values():
+        make_steps(column, 3)
+    turns = {(size, count): _Turn(column, count) for size, column in columns.items() for count in threads}
+    durations = taking_turns({str(key): turn for key, turn in turns.items()}, rounds)
+    return [_cost(turn, durations[str(key)]) for key, turn in turns.items()]
+
+
+def cost_over_domain(material: str, cell_size: float, times: Sequence[int], rounds: int) -> list[tuple[int, Cost]]:
+    """The same column in the paper's domain, and in ones so many times larger along both axes; (cells, cost)."""
+    found = []
+    columns = {factor: moving_column(material, cell_size, domain_factor=factor) for factor in times}
+    for column in columns.values():
+        make_steps(column, 3)
+    turns = {factor: _Turn(column, 1) for factor, column in columns.items()}
+    durations = taking_turns({str(factor): turn for factor, turn in turns.items()}, rounds)
+    for factor, turn in turns.items():
+        cells = turn.column.scene.grid.cells
+        found.append((cells[0] * cells[1], _cost(turn, durations[str(factor)])))
+    return found
+
+
+class _Turn:
+    """Some steps of a column on a number of threads."""
+
+    def __init__(self, column: Simulation, threads: int) -> None:
+        self.column = column
+        self.threads = threads
+        self.points = column.bodies[0].count
+        self.steps = min(max(FEWEST_STEPS, round(POINT_STEPS_PER_TURN / self.points)), MOST_STEPS)
+
+    def __call__(self) -> None:
+        share_between(self.column, self.threads)
+        make_steps(self.column, self.steps)
+
+
+def _cost(turn: _Turn, durations: list[Duration]) -> Cost:
+    per_point_step = 1e9 / (turn.points * turn.steps)
+    return Cost(
+        points=turn.points,
+        threads=turn.threads,
+        nanoseconds=spread([taken.wall * per_point_step for taken in durations]),
+        cpu_nanoseconds=spread([taken.cpu * per_point_step for taken in durations]),
+    )
