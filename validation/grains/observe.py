@@ -51,15 +51,15 @@ def setting_of(description: RunDescription, first: GrainSnapshot) -> Setting:
     Raises InputError if that is not the diameter which the description names.
     """
     diameter = float(sphere_diameters(first.solid_volumes).mean())
-    named = description.grain_diameter
+    named = description.mean_diameter
     if named is not None and not 0.5 < diameter / named < 2.0:
         raise InputError(
-            f"run.json: grain_diameter = {named:g} m, but the grains have {diameter:g} m; are the units the same?"
+            f"run.json: mean_diameter = {named:g} m, but the grains have {diameter:g} m; are the units the same?"
         )
     return Setting(
         width=diameter,
         depth=description.depth,
-        floor=description.floor,
+        floor=description.floor_level,
         center=description.center,
         grain_density=description.grain_density,
         gravity=description.gravity,

@@ -10,8 +10,8 @@ TABLE = ("ITEM: ATOMS", "ITEM: ENTRIES")
 
 
 def recognises(path: Path, start: bytes) -> bool:
-    """A dump starts with its step."""
-    return start.startswith(b"ITEM: TIMESTEP")
+    """A dump starts with its step; one of contacts has entries, not atoms."""
+    return start.startswith(b"ITEM: TIMESTEP") and b"ITEM: ENTRIES" not in start
 
 
 def frames(path: Path) -> Iterator[RawFrame]:

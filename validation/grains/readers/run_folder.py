@@ -1,6 +1,7 @@
 """All frames of a DEM run's folder as snapshots on one clock."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from materials import InputError
@@ -20,20 +21,10 @@ def reader_of(path: Path) -> Reader | None:
     return next((reader for reader in READERS if reader.recognises(path, start)), None)
 
 
-def grain_files(folder: Path, pattern: str) -> list[Path]:
-    """The dumps of a folder in the order of their names. Raises InputError if there is none."""
-    if pattern:
-        found = sorted(path for path in folder.glob(pattern) if path.is_file())
-    else:
-        candidates = sorted(path for path in folder.iterdir() if path.is_file() and path.name != RUN_DESCRIPTION_NAME)
-        found = [path for path in candidates if reader_of(path) is not None]
-    if not found:
-        raise InputError(f"{folder} holds no dump of grains{f' named {pattern}' if pattern else ''}")
-    return found
-
-
 def raw_frames(path: Path) -> list[RawFrame]:
     """The frames of one file in whatever format. Raises InputError if no reader knows it."""
+    if not path.is_file():
+        raise InputError(f"{path} does not exist")
     if path.stat().st_size == 0:
         raise InputError(f"{path} is empty")
     reader = reader_of(path)
@@ -47,18 +38,14 @@ def read_snapshots(folder: Path, description: RunDescription) -> Iterator[GrainS
 
     Raises InputError for a damaged dump, one in other units, and one whose number of grains differs from the first.
     """
-    frames = [frame for path in grain_files(folder, description.grains_files) for frame in raw_frames(path)]
-    yield from snapshots_of(frames, description)
+    yield from snapshots_of(_listed_frames(folder, description), description)
 
 
 def snapshots_of(frames: Sequence[RawFrame], description: RunDescription) -> Iterator[GrainSnapshot]:
     """The same from frames that have been read."""
-    if all(frame.step is not None for frame in frames):
-        frames = sorted(frames, key=lambda frame: frame.step or 0)
-    elif all(frame.time is not None for frame in frames):
-        frames = sorted(frames, key=lambda frame: frame.time or 0.0)
     first: GrainSnapshot | None = None
-    for time, frame in zip(_times(frames, description), frames, strict=True):
+    timed = [(_time(frame, description) - description.release_time, frame) for frame in frames]
+    for time, frame in sorted(timed, key=lambda entry: entry[0]):
         snapshot = snapshot_of(frame, time, description.mobile_types)
         first = first or snapshot
         if snapshot.count != first.count:
@@ -69,16 +56,35 @@ def snapshots_of(frames: Sequence[RawFrame], description: RunDescription) -> Ite
         yield snapshot
 
 
-def _times(frames: Sequence[RawFrame], description: RunDescription) -> list[float]:
-    """Times since the release: the frames' own, or the step times the time step, or those of the description."""
-    if all(frame.time is not None for frame in frames):
-        return [(frame.time or 0.0) - description.release_time for frame in frames]
-    if description.time_step is not None and all(frame.step is not None for frame in frames):
-        return [(frame.step or 0) * description.time_step - description.release_time for frame in frames]
-    if description.times is None:
-        raise InputError(f"{frames[0].path} tells no time: run.json needs times, or time_step for a LIGGGHTS dump")
-    if len(description.times) != len(frames):
-        raise InputError(
-            f"{frames[0].path.parent}: {len(frames)} frames, but run.json lists {len(description.times)} times"
-        )
-    return list(description.times)
+def _listed_frames(folder: Path, description: RunDescription) -> list[RawFrame]:
+    if description.frames is None:
+        return [frame for path in _grain_files(folder, description.grains_files) for frame in raw_frames(path)]
+    frames = []
+    for entry in description.frames:
+        found = raw_frames(folder / entry.file)
+        if entry.time is not None and len(found) > 1:
+            raise InputError(f"{folder / entry.file} holds {len(found)} frames, but run.json gives it one time")
+        frames += [replace(frame, time=frame.time if entry.time is None else entry.time) for frame in found]
+    if not frames:
+        raise InputError(f"{folder / RUN_DESCRIPTION_NAME}: frames is an empty list")
+    return frames
+
+
+def _grain_files(folder: Path, pattern: str) -> list[Path]:
+    """The dumps of a folder in the order of their names. Raises InputError if there is none."""
+    candidates = sorted(path for path in folder.glob(pattern or "*") if path.is_file())
+    found = [path for path in candidates if path.name != RUN_DESCRIPTION_NAME and (pattern or reader_of(path))]
+    if not found:
+        raise InputError(f"{folder} holds no dump of grains{f' named {pattern}' if pattern else ''}")
+    return found
+
+
+def _time(frame: RawFrame, description: RunDescription) -> float:
+    """Time on the run's clock [s]: that of run.json or of the frame, or its step times the time step."""
+    if frame.time is not None:
+        return frame.time
+    if frame.step is not None and description.time_step is not None:
+        return frame.step * description.time_step
+    raise InputError(
+        f"{frame.path} tells no time: run.json needs frames with their times, or time_step for a LIGGGHTS dump"
+    )
