@@ -42,7 +42,9 @@ def observe_folder(folder: Path) -> Observation:
     """The observation of a DEM run's folder. Raises InputError in one line for whatever is wrong in it."""
     description = read_run_description(folder)
     snapshots = list(read_snapshots(folder, description))
-    return observe(snapshots, setting_of(description, snapshots[0]), description.model_dump(mode="json"))
+    return observe(
+        snapshots, setting_of(description, snapshots[0]), description.model_dump(mode="json", exclude={"frames"})
+    )
 
 
 def setting_of(description: RunDescription, first: GrainSnapshot) -> Setting:
