@@ -16,6 +16,7 @@ Source: Roscoe & Burland (1968); the integration is this project's. kappa and la
 import math
 from typing import NamedTuple
 
+from materials.elementary import exponential, exponential_near, growth_over, log_derivative_of_mean, log_ratio, mean_over_path
 from materials.pointwise import pointwise
 from materials.rheology import shear_modulus
 from materials.tensor import SymmetricTensor, added, contraction, half_norm, scaled
@@ -41,6 +42,20 @@ class CamClayStep(NamedTuple):
     preconsolidation_pressure: float
     deviator: SymmetricTensor
     plastic_shear: float
+
+
+class Trial(NamedTuple):
+    """A step taken as elastic: where it started, ln p and p grown by it, and how far it ends from the critical state.
+
+    The wet ratio is 2 p_trial/p_c, above one on the wet side.
+    """
+
+    start_pressure: float
+    start_deviator: SymmetricTensor
+    growth: float
+    factor: float
+    wet_ratio: float
+    shear: SymmetricTensor
 
 
 class YieldState(NamedTuple):
@@ -78,49 +93,27 @@ def cam_clay_step(
     The result is NaN if the iteration does not converge.
     """
     growth = compression / constants.swelling_index
-    factor = math.exp(growth)
+    factor = exponential(growth)
     p = start_pressure * factor
     modulus = shear_modulus(p * mean_over_path(growth, factor) / constants.swelling_index, constants.poisson_ratio)
     s = added(start_deviator, scaled(shear, 2.0 * modulus))
     m = constants.critical_state_ratio
     if 1.5 * contraction(s, s) / (m * m) <= p * (preconsolidation_pressure - p):
         return CamClayStep(p, preconsolidation_pressure, s, 0.0)
-    new = return_to_yield_surface(start_pressure, start_deviator, growth, shear, preconsolidation_pressure, constants)
+    trial = Trial(start_pressure, start_deviator, growth, factor, 2.0 * p / preconsolidation_pressure, shear)
+    new = return_to_yield_surface(trial, preconsolidation_pressure, constants)
     s = scaled(added(start_deviator, scaled(shear, 2.0 * new.modulus)), 1.0 / (1.0 + new.relaxation))
     plastic_shear = 0.5 * half_norm(s) * new.relaxation / new.modulus
     return CamClayStep(new.mean_pressure, new.preconsolidation_pressure, s, plastic_shear)
 
 
 @pointwise
-def mean_over_path(growth: float, factor: float) -> float:
-    """Mean over final value of what grows by factor = exp(growth): (1 - exp(-growth))/growth."""
-    if abs(growth) < 1e-2:
-        return 1.0 - growth / 2.0 * (1.0 - growth / 3.0 * (1.0 - growth / 4.0 * (1.0 - growth / 5.0)))
-    return (1.0 - 1.0 / factor) / growth
-
-
-@pointwise
-def log_derivative_of_mean(growth: float, factor: float) -> float:
-    """Derivative of ln(mean_over_path) with respect to growth."""
-    if abs(growth) < 1e-2:
-        return -0.5 + growth / 12.0
-    return 1.0 / (factor - 1.0) - 1.0 / growth
-
-
-@pointwise
-def return_to_yield_surface(
-    start_pressure: float,
-    start_deviator: SymmetricTensor,
-    growth: float,
-    shear: SymmetricTensor,
-    preconsolidation_pressure: float,
-    constants: CamClay,
-) -> YieldState:
+def return_to_yield_surface(trial: Trial, preconsolidation_pressure: float, constants: CamClay) -> YieldState:
     """The state with F = 0 at the end of the step; NaN if the iteration does not converge."""
-    wetness = math.log(2.0 * start_pressure / preconsolidation_pressure) + growth
+    wetness = math.log(2.0 * trial.start_pressure / preconsolidation_pressure) + trial.growth
     bracket = first_bracket(wetness)
     for _ in range(MAXIMUM_ITERATIONS):
-        new = yield_state(bracket.theta, start_pressure, start_deviator, growth, wetness, shear, constants)
+        new = yield_state(bracket.theta, trial, wetness, constants)
         if is_on_yield_surface(new):
             return new
         bracket = narrowed(bracket, new)
@@ -150,7 +143,7 @@ def narrowed(bracket: Bracket, state: YieldState) -> Bracket:
         below = bracket.theta
     step = -state.residual / state.derivative
     if state.relaxation_rate > 0.0:
-        step = math.expm1(min(step * state.relaxation_rate, LONGEST_STEP)) / state.relaxation_rate
+        step = growth_over(min(step, LONGEST_STEP / state.relaxation_rate), state.relaxation_rate)
     theta = 1.0 / (1.0 / bracket.theta + step)
     if not below < theta < above:
         theta = 0.5 * (below + above)
@@ -158,15 +151,7 @@ def narrowed(bracket: Bracket, state: YieldState) -> Bracket:
 
 
 @pointwise
-def yield_state(
-    theta: float,
-    start_pressure: float,
-    start_deviator: SymmetricTensor,
-    growth: float,
-    wetness: float,
-    shear: SymmetricTensor,
-    constants: CamClay,
-) -> YieldState:
+def yield_state(theta: float, trial: Trial, wetness: float, constants: CamClay) -> YieldState:
     """Residual of F = 0 at theta, and its derivative with respect to the multiplier 1/theta - 1.
 
     With W = p_c/p - 1 and N = 6 G Lambda/M^2 (by which the flow rule shrinks s), F = 0 reads
@@ -179,15 +164,15 @@ def yield_state(
     stiffness = shear_modulus(1.0 / kappa, constants.poisson_ratio)
 
     z = wetness * theta
-    z_factor = math.exp(z)
-    log_growth = growth - elastic_share * wetness * (1.0 - theta)
-    factor = math.exp(log_growth)
-    p = start_pressure * factor
+    z_factor = exponential_near(z, wetness, trial.wet_ratio)
+    log_growth = trial.growth - elastic_share * wetness * (1.0 - theta)
+    factor = exponential_near(log_growth, trial.growth, trial.factor)
+    p = trial.start_pressure * factor
     p_c = 2.0 * p / z_factor
     w = p_c / p - 1.0
 
     mean_modulus = stiffness * mean_over_path(log_growth, factor)
-    s = added(scaled(start_deviator, 1.0 / p), scaled(shear, 2.0 * mean_modulus))
+    s = added(scaled(trial.start_deviator, 1.0 / p), scaled(trial.shear, 2.0 * mean_modulus))
     trial_squared = 1.5 * contraction(s, s) / m_squared
     slope = 3.0 * mean_modulus / (mean_over_path(z, z_factor) * total_slope * m_squared)
     n = slope * (1.0 / theta - 1.0)
@@ -195,7 +180,7 @@ def yield_state(
     dz = -z * theta
     dlog_p = elastic_share * dz
     dlog_mean = log_derivative_of_mean(log_growth, factor)
-    ds = added(scaled(start_deviator, -1.0 / p), scaled(shear, 2.0 * mean_modulus * dlog_mean))
+    ds = added(scaled(trial.start_deviator, -1.0 / p), scaled(trial.shear, 2.0 * mean_modulus * dlog_mean))
     dtrial_squared = 3.0 * contraction(s, ds) / m_squared * dlog_p
     dn = slope + n * (dlog_mean * dlog_p - log_derivative_of_mean(z, z_factor) * dz)
     dw = -(w + 1.0) * dz
@@ -203,7 +188,7 @@ def yield_state(
     relaxed_squared = trial_squared / ((1.0 + n) * (1.0 + n))
     # The logarithm of both sides is almost linear in ln(1 + N), however large a dry step; at W = 0 it does not exist.
     if w > 0.2:
-        residual = 0.5 * math.log(max(relaxed_squared, 1e-300) / w)
+        residual = 0.5 * log_ratio(max(relaxed_squared, 1e-300), w)
         relaxation_rate = dn / (1.0 + n)
         derivative = 0.5 * (dtrial_squared / max(trial_squared, 1e-300) - dw / w) - relaxation_rate
     else:
