@@ -1,6 +1,6 @@
 """What a constitutive law is: declarations, registry, tensor algebra, compilation and element tests."""
 
-from materials.cam_clay import CamClay, CamClayStep, cam_clay_step
+from materials.cam_clay import CamClay, CamClayStep, cam_clay_step, log_volume_of_figure_1
 from materials.declarations import Parameter, StateVariable, checked_parameters
 from materials.errors import InputError, SimulationError
 from materials.gap import Contact, after_closing
@@ -62,6 +62,7 @@ __all__ = [
     "hookimpl",
     "inertial_number",
     "isotropic",
+    "log_volume_of_figure_1",
     "longitudinal_wave_speed",
     "own_inertial_number_constant",
     "pointwise",

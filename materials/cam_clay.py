@@ -197,3 +197,14 @@ def yield_state(theta: float, trial: Trial, wetness: float, constants: CamClay) 
         derivative = dtrial_squared - (1.0 + n) * (2.0 * dn * w + (1.0 + n) * dw)
     yield_function = (relaxed_squared - w) * p * p
     return YieldState(p, p_c, mean_modulus * p, n, yield_function, residual, derivative, relaxation_rate)
+
+
+def log_volume_of_figure_1(
+    mean_pressure: float, overconsolidation_ratio: float, compression_index: float, swelling_index: float
+) -> float:
+    """The logarithm of the specific volume at a pressure [Pa], on ln v = 0.021 - lambda ln(p/1 Pa) less swelling.
+
+    The intercept is the one behind the paper's Figure 1(c); v < 1 there, as nominal as the figure.
+    """
+    log_volume = 0.021 - compression_index * math.log(overconsolidation_ratio * mean_pressure)
+    return log_volume + swelling_index * math.log(overconsolidation_ratio)

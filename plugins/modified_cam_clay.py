@@ -36,6 +36,7 @@ from materials import (
     deviatoric_stress,
     hookimpl,
     isotropic,
+    log_volume_of_figure_1,
     longitudinal_wave_speed,
     pointwise,
     pressure,
@@ -137,13 +138,9 @@ def contradiction(parameters: Parameters) -> str:
 
 
 def density_on_compression_line(mean_pressure: float, parameters: Parameters) -> float:
-    """Bulk density [kg/m3] at rest, from the isotropic compression line ln v = 0.021 - lambda ln(p/1 Pa) and swelling.
-
-    The intercept is the one behind the published Figure 1(c); v < 1 there, as nominal as the figure.
-    """
+    """Bulk density [kg/m3] at rest, from isotropic compression and swelling."""
     ocr = parameters.overconsolidation_ratio
-    log_volume = 0.021 - parameters.compression_index * math.log(ocr * mean_pressure)
-    log_volume += parameters.swelling_index * math.log(ocr)
+    log_volume = log_volume_of_figure_1(mean_pressure, ocr, parameters.compression_index, parameters.swelling_index)
     return parameters.grain_density / math.exp(log_volume)
 
 

@@ -23,6 +23,7 @@ A step. I is the plastic inertial number of the step, with p at its end. For an 
 with M(I) and p_c(I) (`cam_clay_step`, exact and bracketed), and gives back a plastic shear, so an inertial number. A
 larger assumed I makes a larger surface, so less plastic shear: what is found falls while what is assumed rises. The one
 root is found by the secant method, begun at the I of the step before, with bisection wherever that leaves its bracket.
+A step of some per cent can soften so much that its return jumps over that root; it is then taken in equal parts.
 
 Grains carry no tension: opened points keep a gap, as in `modified_cam_clay`.
 
@@ -49,9 +50,11 @@ from materials import (
     cam_clay_step,
     deviator,
     deviatoric_stress,
+    half_norm,
     hookimpl,
     inertial_number,
     isotropic,
+    log_volume_of_figure_1,
     longitudinal_wave_speed,
     own_inertial_number_constant,
     pointwise,
@@ -64,6 +67,10 @@ from materials import (
 # The last move of the yield surface, relative; the secant method leaves its square.
 TOLERANCE = 1e-8
 MAXIMUM_ITERATIONS = 200
+# Of the inertial number found against the one assumed, relative; more means that the return jumps.
+LARGEST_MISMATCH = 1e-6
+# Strain below which a return does not jump.
+SMALLEST_PART = 1e-4
 # exp of this is beyond any pressure, and its square still a number.
 LARGEST_EXPONENT = 300.0
 
@@ -153,13 +160,39 @@ def update(
         state.preconsolidation_pressure,
         dt,
     )
-    flow = consistent_flow(increment, state.inertial_number, parameters)
+    flow = flow_in_parts(increment, state.inertial_number, parameters)
     end = flow.end
     size_at_rest = max(end.preconsolidation_pressure, 2.0 * smallest) / growth_of_surface(flow.assumed, parameters)
     if end.mean_pressure < smallest:
         gap = parameters.swelling_index * math.log(smallest / end.mean_pressure)
         return isotropic(0.0), State(size_at_rest, gap, 0.0)
     return assembled_stress(end.mean_pressure, end.deviator), State(size_at_rest, 0.0, flow.found)
+
+
+@pointwise
+def flow_in_parts(increment: Increment, guess: float, parameters: Parameters) -> Flow:
+    """The whole step or, where its return jumps, the last of as many equal parts as it takes not to."""
+    size = abs(increment.compression) + half_norm(increment.shear)
+    parts = 1
+    while True:
+        flow, is_consistent = led_through(increment, parts, guess, parameters)
+        if is_consistent or size <= SMALLEST_PART * parts:
+            return flow
+        parts *= 4
+
+
+@pointwise
+def led_through(increment: Increment, parts: int, guess: float, parameters: Parameters) -> tuple[Flow, bool]:
+    """The last of equal parts of a step, and whether each had the inertial number of its own plastic strain."""
+    start = CamClayStep(increment.start_pressure, increment.size_at_rest, increment.start_deviator, 0.0)
+    flow, is_consistent = Flow(start, 0.0, guess), True
+    compression, shear, dt = increment.compression / parts, scaled(increment.shear, 1.0 / parts), increment.dt / parts
+    for _ in range(parts):
+        size_at_rest = flow.end.preconsolidation_pressure / growth_of_surface(flow.assumed, parameters)
+        part = Increment(flow.end.mean_pressure, flow.end.deviator, compression, shear, size_at_rest, dt)
+        flow = consistent_flow(part, flow.found, parameters)
+        is_consistent = is_consistent and abs(flow.found - flow.assumed) <= LARGEST_MISMATCH * flow.assumed
+    return flow, is_consistent
 
 
 @pointwise
@@ -282,10 +315,9 @@ def contradiction(parameters: Parameters) -> str:
 
 
 def density_on_compression_line(mean_pressure: float, parameters: Parameters) -> float:
-    """Bulk density [kg/m3] at rest on the lines of `modified_cam_clay`: ln v = 0.021 - lambda ln(p/1 Pa), swelling."""
+    """Bulk density [kg/m3] at rest, on the lines of `modified_cam_clay`."""
     ocr = parameters.overconsolidation_ratio
-    log_volume = 0.021 - parameters.compression_index * math.log(ocr * mean_pressure)
-    log_volume += parameters.swelling_index * math.log(ocr)
+    log_volume = log_volume_of_figure_1(mean_pressure, ocr, parameters.compression_index, parameters.swelling_index)
     return parameters.grain_density / math.exp(log_volume)
 
 

@@ -15,6 +15,7 @@ SUITES: dict[str, tuple[str, ...]] = {
         "mcc_triaxial_undrained",
         "mcc_one_dimensional_compression",
         "return_mapping",
+        "mu_i_mcc_return",
         "opening_and_closing",
         "rigid_rotation",
         "elastic_bar_vibration",

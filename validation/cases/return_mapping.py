@@ -1,6 +1,5 @@
 """The return map of Modified Cam Clay on a million random states and increments."""
 
-import inspect
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -8,58 +7,36 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from materials import cam_clay
 from materials.compilation import named, pointwise_law, registered
 from materials.registry import get_material
 from materials.tensor import SymmetricTensor
 from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
+from validation.random_increments import norm, random_cases, stress_norm
 
 YIELD_BAND, ITERATIONS_BAND, SMALL_INCREMENT_BAND = 1e-10, 6.0, 1e-2
 COUNT = {Effort.QUICK: 100_000, Effort.FULL: 1_000_000}
 SUBSTEPS, LONGEST_COUNT = 1000, 100
 LAW = get_material("modified_cam_clay")
 PARAMETERS = LAW.parameter_sets["paper"].parameters
+SLOPE = PARAMETERS.critical_state_ratio
+CONSTANTS = cam_clay.CamClay(SLOPE, PARAMETERS.compression_index, PARAMETERS.swelling_index, PARAMETERS.poisson_ratio)
 LARGEST_STRAIN = 0.2
 # How many increments are compared with substeps.
 COMPARED = 300
-
-
-def random_cases(count: int, smallest: float, largest: float, largest_ocr: float = 100.0) -> np.ndarray:
-    """Columns p, p_c [Pa], six components of s [Pa] and of a strain increment; shape (14, count).
-
-    p, OCR and the norm of the increment are spread evenly in the logarithm, over 1 Pa to 1 MPa, 1 to `largest_ocr` and
-    `smallest` to `largest`; q/p and the directions evenly, over 0 to 2.
-    """
-    random = np.random.default_rng(20240607)
-    p = 10.0 ** random.uniform(0.0, 6.0, count)
-    q = p * random.uniform(0.0, 2.0, count)
-    ocr = largest_ocr ** random.uniform(0.0, 1.0, count)
-    m = PARAMETERS.critical_state_ratio
-    deviator, strain = random.normal(size=(2, 6, count))
-    deviator[:3] -= deviator[:3].mean(axis=0)
-    norms = np.exp(random.uniform(np.log(smallest), np.log(largest), count))
-    deviator *= q / (np.sqrt(1.5) * norm(deviator))
-    strain *= norms / norm(strain)
-    return np.vstack([p, ocr * (p + (q / m) ** 2 / p), deviator, strain])
-
-
-def norm(tensors: np.ndarray) -> np.ndarray:
-    """sqrt(a:a) of components xx, yy, zz, xy, yz, xz; shape (count,)."""
-    return np.asarray(np.sqrt((tensors[:3] ** 2).sum(axis=0) + 2.0 * (tensors[3:] ** 2).sum(axis=0)))
 
 
 @cache
 def compiled() -> tuple[Callable[..., Any], Callable[..., Any]]:
     """The law's step over arrays in n substeps, and the count of the evaluations that its return takes."""
     law = pointwise_law(LAW)
-    # The stages of the return map are no part of a law's interface; they stand beside its update.
-    cam_clay: Any = inspect.getmodule(LAW.update)
     step, state = registered(cam_clay.cam_clay_step), registered(cam_clay.yield_state)
     first, is_on_surface = registered(cam_clay.first_bracket), registered(cam_clay.is_on_yield_surface)
     narrowed = registered(cam_clay.narrowed)
 
     @njit(cache=True)
     @named(law.mark)
-    def stepped(cases, parameters, substeps, results):  # type: ignore[no-untyped-def]
+    def stepped(cases, constants, substeps, results):  # type: ignore[no-untyped-def]
         for k in range(cases.shape[1]):
             p, p_c = cases[0, k], cases[1, k]
             s = SymmetricTensor(cases[2, k], cases[3, k], cases[4, k], cases[5, k], cases[6, k], cases[7, k])
@@ -74,14 +51,14 @@ def compiled() -> tuple[Callable[..., Any], Callable[..., Any]]:
                 cases[13, k] / substeps,
             )
             for _ in range(substeps):
-                p, p_c, s = step(p, s, compression, shear, p_c, parameters)
+                p, p_c, s, _plastic_shear = step(p, s, compression, shear, p_c, constants)
             results[0, k], results[1, k] = p, p_c
             results[2, k], results[3, k], results[4, k] = s.xx, s.yy, s.zz
             results[5, k], results[6, k], results[7, k] = s.xy, s.yz, s.xz
 
     @njit(cache=True)
     @named(law.mark)
-    def evaluations(cases, parameters, longest, counts):  # type: ignore[no-untyped-def]
+    def evaluations(cases, constants, longest, counts):  # type: ignore[no-untyped-def]
         for k in range(cases.shape[1]):
             s = SymmetricTensor(cases[2, k], cases[3, k], cases[4, k], cases[5, k], cases[6, k], cases[7, k])
             compression = -(cases[8, k] + cases[9, k] + cases[10, k])
@@ -89,11 +66,11 @@ def compiled() -> tuple[Callable[..., Any], Callable[..., Any]]:
             shear = SymmetricTensor(
                 cases[8, k] + third, cases[9, k] + third, cases[10, k] + third, cases[11, k], cases[12, k], cases[13, k]
             )
-            growth = compression / parameters.swelling_index
+            growth = compression / constants.swelling_index
             wetness = np.log(2.0 * cases[0, k] / cases[1, k]) + growth
             bracket = first(wetness)
             for count in range(1, longest + 1):
-                new = state(bracket.theta, cases[0, k], s, growth, wetness, shear, parameters)
+                new = state(bracket.theta, cases[0, k], s, growth, wetness, shear, constants)
                 counts[k] = count
                 if is_on_surface(new):
                     break
@@ -105,7 +82,7 @@ def compiled() -> tuple[Callable[..., Any], Callable[..., Any]]:
 def stepped(cases: np.ndarray, substeps: int = 1) -> np.ndarray:
     """p, p_c and the six components of s [Pa] after the increments; shape (8, count)."""
     results = np.empty((8, cases.shape[1]))
-    compiled()[0](cases, PARAMETERS, substeps, results)
+    compiled()[0](cases, CONSTANTS, substeps, results)
     return results
 
 
@@ -113,32 +90,27 @@ def yield_error(results: np.ndarray) -> np.ndarray:
     """|F|/p_c^2 of states after a step; shape (count,)."""
     p, p_c = results[:2]
     q_squared = 1.5 * norm(results[2:]) ** 2
-    return np.asarray(np.abs(q_squared / PARAMETERS.critical_state_ratio**2 - p * (p_c - p)) / p_c**2)
+    return np.asarray(np.abs(q_squared / SLOPE**2 - p * (p_c - p)) / p_c**2)
 
 
 def evaluations(cases: np.ndarray) -> np.ndarray:
     """How often the return map of each plastic increment evaluates its residual; shape (count,)."""
     counts = np.empty(cases.shape[1], np.int64)
-    compiled()[1](cases, PARAMETERS, LONGEST_COUNT, counts)
+    compiled()[1](cases, CONSTANTS, LONGEST_COUNT, counts)
     return counts
 
 
 def substep_errors(largest: float, count: int) -> np.ndarray:
     """|sigma - sigma_1000| / |sigma_1000| of one step against 1000 substeps, from the yield surface, plastic only."""
-    cases = random_cases(count, 0.5 * largest, largest, largest_ocr=1.0)
+    cases = random_cases(count, 0.5 * largest, largest, SLOPE, largest_ocr=1.0)
     fine, coarse = stepped(cases, SUBSTEPS), stepped(cases)
     plastic = fine[1] != cases[1]
     return (stress_norm(fine - coarse) / stress_norm(fine))[plastic]
 
 
-def stress_norm(results: np.ndarray) -> np.ndarray:
-    """|sigma| = sqrt(3 p^2 + s:s) [Pa], shape (count,)."""
-    return np.asarray(np.sqrt(3.0 * results[0] ** 2 + norm(results[2:]) ** 2))
-
-
 def measure(effort: Effort) -> Evidence:
     """The law as it is."""
-    cases = random_cases(COUNT[effort], 1e-8, LARGEST_STRAIN)
+    cases = random_cases(COUNT[effort], 1e-8, LARGEST_STRAIN, SLOPE)
     results = stepped(cases)
     plastic = results[1] != cases[1]
     counts = evaluations(cases[:, plastic])
@@ -173,7 +145,7 @@ def measure(effort: Effort) -> Evidence:
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """The right stress with the p_c of before the step."""
-    cases = random_cases(10_000, 1e-8, LARGEST_STRAIN)
+    cases = random_cases(10_000, 1e-8, LARGEST_STRAIN, SLOPE)
     results = stepped(cases)
     plastic = results[1] != cases[1]
     trial = results.copy()
