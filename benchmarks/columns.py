@@ -1,6 +1,6 @@
 """The paper's column as the benchmarks use it: at rest at the start, or set in motion so that every point yields."""
 
-from mpm_core.columns import LXX, LYY, VX, VY, X, Y
+from mpm_core.columns import AXX, AYY, LXX, LYY, VX, VY, X, Y
 from mpm_core.run import next_step
 from mpm_core.simulation import Simulation
 from mpm_core.threads import use_threads
@@ -32,6 +32,7 @@ def moving_column(material: str, cell_size: float, threads: int = 1, domain_fact
     body.points[VX] = SPREADING_RATE * (body.points[X] - body.points[X].mean())
     body.points[VY] = -SPREADING_RATE * body.points[Y]
     body.points[LXX], body.points[LYY] = SPREADING_RATE, -SPREADING_RATE
+    body.points[AXX], body.points[AYY] = SPREADING_RATE, -SPREADING_RATE
     return simulation
 
 

@@ -24,10 +24,10 @@ from mpm_core.simulation import Simulation
 
 # Columns of a point that a pass reads and writes; of the stress pass without the law's state.
 COLUMNS_MOVED = {
-    # x, v, L, in-plane stress, density
+    # x, v, affine velocity, in-plane stress, density
     "points to grid": 12,
-    # reads x, v; writes x, v, L, density around
-    "grid to points": 4 + 9,
+    # reads x, v, affine velocity; writes x, v, L, affine velocity, density around
+    "grid to points": 8 + 13,
     # reads v, L, stress, density, density around; writes stress, density
     "stress": 12 + 5,
 }
@@ -35,7 +35,7 @@ STATE_PASSES = ("stress",)
 # Operations per point, for quadratic splines: weights, then nine nodes with their weight, affine values and sums.
 OPERATIONS = {
     "points to grid": 50 + 3 * 12 + 9 * (1 + 4 * 2 + 6 * 2),
-    "grid to points": 60 + 9 * (1 + 2 + 2 + 7 * 2),
+    "grid to points": 60 + 9 * (1 + 2 + 2 + 11 * 2),
 }
 
 

@@ -16,12 +16,19 @@ Source: Roscoe & Burland (1968); the integration is this project's. kappa and la
 import math
 from typing import NamedTuple
 
-from materials.elementary import exponential, exponential_near, growth_over, log_derivative_of_mean, log_ratio, mean_over_path
+from materials.elementary import (
+    exponential,
+    exponential_near,
+    growth_over,
+    log_derivative_of_mean,
+    log_ratio,
+    mean_over_path,
+)
 from materials.pointwise import pointwise
 from materials.rheology import shear_modulus
 from materials.tensor import SymmetricTensor, added, contraction, half_norm, scaled
 
-TOLERANCE = 1e-11
+TOLERANCE = 5e-11
 MAXIMUM_ITERATIONS = 100
 LONGEST_STEP = 30.0
 
@@ -45,21 +52,31 @@ class CamClayStep(NamedTuple):
 
 
 class Trial(NamedTuple):
-    """A step taken as elastic: where it started, ln p and p grown by it, and how far it ends from the critical state.
+    """A step taken as elastic: its start, its strain, and where it ends.
 
-    The wet ratio is 2 p_trial/p_c, above one on the wet side.
+    start_pressure  p at the start [Pa]
+    start_ratio     s/p at the start [1]
+    shear           deviatoric strain increment [1]
+    growth          ln(p_trial/p) and
+    shrunk          p/p_trial [1]
+    wetness         ln(2 p_trial/p_c), positive on the wet side of the critical state, and
+    dry_ratio       p_c/(2 p_trial) [1]
     """
 
     start_pressure: float
-    start_deviator: SymmetricTensor
-    growth: float
-    factor: float
-    wet_ratio: float
+    start_ratio: SymmetricTensor
     shear: SymmetricTensor
+    growth: float
+    shrunk: float
+    wetness: float
+    dry_ratio: float
 
 
 class YieldState(NamedTuple):
-    """A point of the path from the elastic trial state (theta = 1) to the critical state (theta = 0)."""
+    """A point of the path from the elastic trial state (theta = 1) to the critical state (theta = 0).
+
+    `newton_step` leads to the root along the tangent, in the multiplier 1/theta - 1.
+    """
 
     mean_pressure: float
     preconsolidation_pressure: float
@@ -67,7 +84,7 @@ class YieldState(NamedTuple):
     relaxation: float
     yield_function: float
     residual: float
-    derivative: float
+    newton_step: float
     relaxation_rate: float
 
 
@@ -93,27 +110,44 @@ def cam_clay_step(
     The result is NaN if the iteration does not converge.
     """
     growth = compression / constants.swelling_index
-    factor = exponential(growth)
-    p = start_pressure * factor
-    modulus = shear_modulus(p * mean_over_path(growth, factor) / constants.swelling_index, constants.poisson_ratio)
+    shrunk = exponential(-growth)
+    p = start_pressure / shrunk
+    modulus = shear_modulus(p * mean_over_path(growth, shrunk) / constants.swelling_index, constants.poisson_ratio)
     s = added(start_deviator, scaled(shear, 2.0 * modulus))
     m = constants.critical_state_ratio
     if 1.5 * contraction(s, s) / (m * m) <= p * (preconsolidation_pressure - p):
         return CamClayStep(p, preconsolidation_pressure, s, 0.0)
-    trial = Trial(start_pressure, start_deviator, growth, factor, 2.0 * p / preconsolidation_pressure, shear)
-    new = return_to_yield_surface(trial, preconsolidation_pressure, constants)
+    trial = elastic_trial(start_pressure, start_deviator, compression, shear, preconsolidation_pressure, constants)
+    new = return_to_yield_surface(trial, constants)
     s = scaled(added(start_deviator, scaled(shear, 2.0 * new.modulus)), 1.0 / (1.0 + new.relaxation))
     plastic_shear = 0.5 * half_norm(s) * new.relaxation / new.modulus
     return CamClayStep(new.mean_pressure, new.preconsolidation_pressure, s, plastic_shear)
 
 
 @pointwise
-def return_to_yield_surface(trial: Trial, preconsolidation_pressure: float, constants: CamClay) -> YieldState:
+def elastic_trial(
+    start_pressure: float,
+    start_deviator: SymmetricTensor,
+    compression: float,
+    shear: SymmetricTensor,
+    preconsolidation_pressure: float,
+    constants: CamClay,
+) -> Trial:
+    """One strain increment taken as elastic, as the return starts from it."""
+    growth = compression / constants.swelling_index
+    shrunk = exponential(-growth)
+    wetness = math.log(2.0 * start_pressure / preconsolidation_pressure) + growth
+    dry_ratio = 0.5 * preconsolidation_pressure * shrunk / start_pressure
+    start_ratio = scaled(start_deviator, 1.0 / start_pressure)
+    return Trial(start_pressure, start_ratio, shear, growth, shrunk, wetness, dry_ratio)
+
+
+@pointwise
+def return_to_yield_surface(trial: Trial, constants: CamClay) -> YieldState:
     """The state with F = 0 at the end of the step; NaN if the iteration does not converge."""
-    wetness = math.log(2.0 * trial.start_pressure / preconsolidation_pressure) + trial.growth
-    bracket = first_bracket(wetness)
+    bracket = first_bracket(trial.wetness)
     for _ in range(MAXIMUM_ITERATIONS):
-        new = yield_state(bracket.theta, trial, wetness, constants)
+        new = yield_state(bracket.theta, trial, constants)
         if is_on_yield_surface(new):
             return new
         bracket = narrowed(bracket, new)
@@ -141,18 +175,18 @@ def narrowed(bracket: Bracket, state: YieldState) -> Bracket:
         above = bracket.theta
     else:
         below = bracket.theta
-    step = -state.residual / state.derivative
+    step = state.newton_step
     if state.relaxation_rate > 0.0:
         step = growth_over(min(step, LONGEST_STEP / state.relaxation_rate), state.relaxation_rate)
-    theta = 1.0 / (1.0 / bracket.theta + step)
+    theta = bracket.theta / (1.0 + step * bracket.theta)
     if not below < theta < above:
         theta = 0.5 * (below + above)
     return Bracket(theta, below, above)
 
 
 @pointwise
-def yield_state(theta: float, trial: Trial, wetness: float, constants: CamClay) -> YieldState:
-    """Residual of F = 0 at theta, and its derivative with respect to the multiplier 1/theta - 1.
+def yield_state(theta: float, trial: Trial, constants: CamClay) -> YieldState:
+    """Residual of F = 0 at theta, and the step of Newton's method in the multiplier 1/theta - 1.
 
     With W = p_c/p - 1 and N = 6 G Lambda/M^2 (by which the flow rule shrinks s), F = 0 reads
     (q_trial/(M p))^2 = (1 + N)^2 W. The relaxation rate is the derivative of ln(1 + N); 0 asks for a plain step.
@@ -163,40 +197,44 @@ def yield_state(theta: float, trial: Trial, wetness: float, constants: CamClay) 
     elastic_share = 1.0 / (kappa * total_slope)
     stiffness = shear_modulus(1.0 / kappa, constants.poisson_ratio)
 
-    z = wetness * theta
-    z_factor = exponential_near(z, wetness, trial.wet_ratio)
-    log_growth = trial.growth - elastic_share * wetness * (1.0 - theta)
-    factor = exponential_near(log_growth, trial.growth, trial.factor)
-    p = trial.start_pressure * factor
-    p_c = 2.0 * p / z_factor
-    w = p_c / p - 1.0
+    z = trial.wetness * theta
+    dry_ratio = exponential_near(-z, -trial.wetness, trial.dry_ratio)
+    log_growth = trial.growth - elastic_share * trial.wetness * (1.0 - theta)
+    shrunk = exponential_near(-log_growth, -trial.growth, trial.shrunk)
+    p = trial.start_pressure / shrunk
+    w = 2.0 * dry_ratio - 1.0
 
-    mean_modulus = stiffness * mean_over_path(log_growth, factor)
-    s = added(scaled(trial.start_deviator, 1.0 / p), scaled(trial.shear, 2.0 * mean_modulus))
-    trial_squared = 1.5 * contraction(s, s) / m_squared
-    slope = 3.0 * mean_modulus / (mean_over_path(z, z_factor) * total_slope * m_squared)
-    n = slope * (1.0 / theta - 1.0)
+    mean_modulus = stiffness * mean_over_path(log_growth, shrunk)
+    at_start, sheared = scaled(trial.start_ratio, shrunk), scaled(trial.shear, 2.0 * mean_modulus)
+    s = added(at_start, sheared)
+    trial_squared = 1.5 / m_squared * contraction(s, s)
+    slope = 3.0 / (total_slope * m_squared) * mean_modulus / mean_over_path(z, dry_ratio)
+    n = slope * (1.0 - theta) / theta
 
     dz = -z * theta
     dlog_p = elastic_share * dz
-    dlog_mean = log_derivative_of_mean(log_growth, factor)
-    ds = added(scaled(trial.start_deviator, -1.0 / p), scaled(trial.shear, 2.0 * mean_modulus * dlog_mean))
-    dtrial_squared = 3.0 * contraction(s, ds) / m_squared * dlog_p
-    dn = slope + n * (dlog_mean * dlog_p - log_derivative_of_mean(z, z_factor) * dz)
+    dlog_mean = log_derivative_of_mean(log_growth, shrunk)
+    ds = added(scaled(at_start, -1.0), scaled(sheared, dlog_mean))
+    dtrial_squared = 3.0 / m_squared * contraction(s, ds) * dlog_p
+    dn = slope + n * (dlog_mean * dlog_p - log_derivative_of_mean(z, dry_ratio) * dz)
     dw = -(w + 1.0) * dz
 
-    relaxed_squared = trial_squared / ((1.0 + n) * (1.0 + n))
+    shrinkage = 1.0 / (1.0 + n)
+    relaxed_squared = trial_squared * shrinkage * shrinkage
     # The logarithm of both sides is almost linear in ln(1 + N), however large a dry step; at W = 0 it does not exist.
     if w > 0.2:
+        product = max(trial_squared, 1e-300) * w
         residual = 0.5 * log_ratio(max(relaxed_squared, 1e-300), w)
-        relaxation_rate = dn / (1.0 + n)
-        derivative = 0.5 * (dtrial_squared / max(trial_squared, 1e-300) - dw / w) - relaxation_rate
+        relaxation_rate = dn * shrinkage
+        derivative = 0.5 * (dtrial_squared * w - dw * trial_squared) - relaxation_rate * product
+        newton_step = -residual * product / derivative
     else:
         residual = trial_squared - (1.0 + n) * (1.0 + n) * w
         relaxation_rate = 0.0
-        derivative = dtrial_squared - (1.0 + n) * (2.0 * dn * w + (1.0 + n) * dw)
+        newton_step = -residual / (dtrial_squared - (1.0 + n) * (2.0 * dn * w + (1.0 + n) * dw))
     yield_function = (relaxed_squared - w) * p * p
-    return YieldState(p, p_c, mean_modulus * p, n, yield_function, residual, derivative, relaxation_rate)
+    p_c = 2.0 * dry_ratio * p
+    return YieldState(p, p_c, mean_modulus * p, n, yield_function, residual, newton_step, relaxation_rate)
 
 
 def log_volume_of_figure_1(

@@ -16,7 +16,9 @@ def exponential(x: float) -> float:
     if abs(x) > SMALL:
         return math.exp(x)
     square = x * x
-    return 1.0 + (x + square * (0.5 + x * (1.0 / 6.0) + square * (1.0 / 24.0 + x * (1.0 / 120.0) + square * (1.0 / 720.0))))
+    return 1.0 + (
+        x + square * (0.5 + x * (1.0 / 6.0) + square * (1.0 / 24.0 + x * (1.0 / 120.0) + square * (1.0 / 720.0)))
+    )
 
 
 @pointwise
@@ -49,16 +51,16 @@ def growth_over(x: float, rate: float) -> float:
 
 
 @pointwise
-def mean_over_path(growth: float, factor: float) -> float:
-    """Mean over final value of what grows by factor = exp(growth): (1 - exp(-growth))/growth."""
+def mean_over_path(growth: float, shrunk: float) -> float:
+    """Mean over final value of what grows by exp(growth), (1 - exp(-growth))/growth; shrunk is exp(-growth)."""
     if abs(growth) > SMALL:
-        return (1.0 - 1.0 / factor) / growth
+        return (1.0 - shrunk) / growth
     return 1.0 - growth * (0.5 - growth * (1.0 / 6.0 - growth * (1.0 / 24.0 - growth * (1.0 / 120.0))))
 
 
 @pointwise
-def log_derivative_of_mean(growth: float, factor: float) -> float:
+def log_derivative_of_mean(growth: float, shrunk: float) -> float:
     """Derivative of ln(mean_over_path) with respect to growth."""
     if abs(growth) > SMALL:
-        return 1.0 / (factor - 1.0) - 1.0 / growth
+        return (shrunk * growth - (1.0 - shrunk)) / ((1.0 - shrunk) * growth)
     return growth * (1.0 / 12.0) - 0.5

@@ -136,7 +136,7 @@ BASES = {
 
 
 def make_stencil(basis: Basis) -> Callable[..., tuple[int, float, tuple[float, ...], float]]:
-    """A function (grid coordinate, lower ghost, upper ghost) -> (first node, f, weights, 1/moment) for compiled code."""
+    """A function (grid coordinate, lower ghost, upper ghost) -> (first node, f, weights, 1/moment), for kernels."""
     width, offset, weights = basis.width, basis.offset, basis.weights
     inverse_moment, at_lower_wall, at_upper_wall = basis.inverse_moment, basis.lower_wall, basis.upper_wall
 

@@ -17,6 +17,7 @@ X, Y = 0, 1
 VX, VY = 2, 3
 LXX, LXY, LYX, LYY = 4, 5, 6, 7
 AXX, AXY, AYX, AYY = 8, 9, 10, 11
+GRADIENT, AFFINE = slice(4, 8), slice(8, 12)
 SXX, SYY, SZZ, SXY = 12, 13, 14, 15
 DENSITY = 16
 DENSITY_AROUND = 17

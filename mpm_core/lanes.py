@@ -5,6 +5,7 @@ load, one or two fused multiply-adds and a store. Each lane is rounded like the 
 the machine's registers changes the time, not the result.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
@@ -37,8 +38,7 @@ class _LanesModel(PrimitiveModel):
 
 
 @intrinsic
-def lanes(typing_context: Any, values: Any) -> Any:
-    """LANES scalars, given as a tuple, side by side."""
+def _lanes(typing_context: Any, values: Any) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         vector = ir.Constant(_VECTOR, ir.Undefined)
@@ -51,8 +51,7 @@ def lanes(typing_context: Any, values: Any) -> Any:
 
 
 @intrinsic
-def lane(typing_context: Any, vector: Any, index: Any) -> Any:
-    """One of the scalars; the index is a constant."""
+def _lane(typing_context: Any, vector: Any, index: Any) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.extract_element(arguments[0], ir.Constant(_INDEX, index.literal_value))
@@ -95,6 +94,12 @@ def _store(typing_context: Any, array: Any, position: Any, vector: Any) -> Any:
 def _place(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     array = context.make_array(signature.args[0])(context, builder, arguments[0])
     return builder.bitcast(builder.gep(array.data, [arguments[1]]), _VECTOR.as_pointer())
+
+
+# (tuple of LANES scalars) -> the scalars side by side
+lanes: Callable[..., Any] = _lanes
+# (vector, constant index) -> one of the scalars
+lane: Callable[..., float] = _lane
 
 
 @register_jitable

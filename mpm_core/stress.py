@@ -1,6 +1,6 @@
 """The stress pass: the only kernel that knows a law. One is generated for each law that a scene uses.
 
-For each point: rotate the stress with the material (exact rotation by the increment of spin; Hughes & Winget 1980),
+For each point: rotate the stress with the material (exact rotation by the increment of spin),
 bring the density to the end of the step (midpoint rule for d ln rho = -tr D dt), call the law.
 
 Points without contact. In a flow each point sums up its own error of volume, which no force of the grid can see: after
@@ -20,7 +20,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw, named
-from materials.tensor import SymmetricTensor, added, contraction, isotropic, shear_strain_rate, trace
+from materials.tensor import SymmetricTensor, added, isotropic, shear_strain_rate, trace
 from mpm_core.columns import (
     DENSITY,
     DENSITY_AROUND,
@@ -128,8 +128,8 @@ def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
 def closing_strain(density, around, shear_rate, exchange):  # type: ignore[no-untyped-def]
     """The compressive strain of one step towards the density around; `exchange` is dt over the time constant.
 
-    It is d s/(1 + s) with the share s = exchange gamma_dot/(gamma_dot + QUIET_RATE) and d = ln(around/density), the latter
-    to third order, bounded by 2 for points that have lost contact.
+    It is d s/(1 + s) with the share s = exchange gamma_dot/(gamma_dot + QUIET_RATE) and d = ln(around/density), to third
+    order and bounded by 2 for points that have lost contact.
     """
     share = exchange * shear_rate
     difference = max(0.0, 2.0 * (around - density))
@@ -149,7 +149,8 @@ def ordered_bits(value):  # type: ignore[no-untyped-def]
 def bring_forward(rows, first, last, dt, exchange, closings, works, keeps_shear_strain):  # type: ignore[no-untyped-def]
     """Rotate the stress and bring the density to the end of the step; returns the largest volumetric increment.
 
-    `closings` receives the isotropic strain rate of points without contact, `works` the power of the old stress over mass.
+    `closings` receives the isotropic strain rate of points without contact, `works` the power of the old stress over
+    mass.
     """
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]

@@ -1,12 +1,14 @@
 """The two transfers of the Material Point Method. They know points, nodes and shape functions, but no law.
 
-Affine particle-in-cell transfer (Jiang et al. 2015) with the moving-least-squares gradient (Hu et al. 2018): one
-matrix per point, L = sum_i w_i v_i (x_i - x_p)^T / D, is both its affine velocity field and its velocity gradient. On
-top of it the point keeps what the grid did not resolve of its velocity, v_p - sum_i w_i v_i, for a time constant tau:
+Affine particle-in-cell transfer (Jiang et al. 2015) with the moving-least-squares gradient (Hu et al. 2018): a point
+brings the velocity field v + A (x - x_p) to the grid and takes the gradient L = sum_i w_i v_i (x_i - x_p)^T / D from
+it. On top of it the point keeps what the grid did not resolve of its field, for a time constant tau:
 
-    v_p <- sum_i w_i v_i^new + exp(-dt/tau) (v_p - sum_i w_i v_i^old)
+    v <- sum_i w_i v_i^new + exp(-dt/tau) (v - sum_i w_i v_i^old)
+    A <- L^new             + exp(-dt/tau) (A - L^old)
 
-so that tau = 0 is APIC, tau = infinity affine FLIP, and the loss per second does not depend on the step.
+so that tau = 0 is APIC, tau = infinity affine FLIP, and the loss per second does not depend on the step. The energy of
+a point's field is m/2 (v^2 + A:A D); for tau = infinity the transfers keep its sum, but for terms of the order of dt.
 
 The grid also returns to each point the density of the material around it, the ratio of mass and volume at the nodes,
 towards which `stress` closes points that have lost contact.
@@ -27,7 +29,25 @@ from numba import njit, prange
 
 from materials.compilation import named
 from mpm_core.basis import Basis, make_stencil
-from mpm_core.columns import AXX, AXY, AYX, AYY, DENSITY, DENSITY_AROUND, LXX, LXY, LYX, LYY, SXX, SXY, SYY, VX, VY, X, Y
+from mpm_core.columns import (
+    AXX,
+    AXY,
+    AYX,
+    AYY,
+    DENSITY,
+    DENSITY_AROUND,
+    LXX,
+    LXY,
+    LYX,
+    LYY,
+    SXX,
+    SXY,
+    SYY,
+    VX,
+    VY,
+    X,
+    Y,
+)
 from mpm_core.grid import COMPONENTS, NEW_VX, NEW_VY, NODE_DENSITY, OLD_VX, OLD_VY
 from mpm_core.lanes import LANES, deposit, lane, lanes, node_at, scaled_sum
 from mpm_core.sources import CORE_MARK
@@ -44,7 +64,7 @@ REPORTS = 8
 def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
     """Scatter mass, volume, momentum and internal force of the stripes of one parity to the grid.
 
-    m_i += w_i m;  V_i += w_i V;  (m v)_i += w_i m (v + L (x_i - x_p));  f_i -= w_i V sigma (x_i - x_p) / D
+    m_i += w_i m;  V_i += w_i V;  (m v)_i += w_i m (v + A (x_i - x_p));  f_i -= w_i V sigma (x_i - x_p) / D
     """
     width, stencil = basis.width, make_stencil(basis)
 
@@ -85,7 +105,7 @@ def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
 
 @cache
 def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
-    """Gather velocity, velocity gradient and the density around from the grid, and move the points.
+    """Gather velocity, its gradient and the density around from the grid, and move the points.
 
     `memory` is exp(-dt/tau). Reports per block of points: kinetic energy [J/m], corners of the bounding box [m], the
     largest speed at which a point moves [m/s] and the momentum of that motion [kg/s].
@@ -102,6 +122,7 @@ def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
         axx, axy, ayx, ayy = rows[AXX], rows[AXY], rows[AYX], rows[AYY]
         density_around = rows[DENSITY_AROUND]
         inverse_size = 1.0 / cell_size
+        square = cell_size * cell_size
         count = len(x)
         zero = lanes(ZEROS)
         for block in prange(reports.shape[0]):
@@ -139,9 +160,11 @@ def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
                 new_x = x[p] + dt * new_vx
                 new_y = y[p] + dt * new_vy
                 x[p], y[p] = new_x, new_y
-                speed_squared = velocity_x * velocity_x + velocity_y * velocity_y
+                along_x = axx[p] * axx[p] + ayx[p] * ayx[p]
+                along_y = axy[p] * axy[p] + ayy[p] * ayy[p]
+                twice_energy += velocity_x * velocity_x + velocity_y * velocity_y
+                twice_energy += square * (along_x * inverse_y + along_y * inverse_x) / (inverse_x * inverse_y)
                 moved_squared = new_vx * new_vx + new_vy * new_vy
-                twice_energy += speed_squared
                 moved_x += new_vx
                 moved_y += new_vy
                 fastest = max(fastest, moved_squared)

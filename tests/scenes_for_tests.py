@@ -9,7 +9,7 @@ import tomli_w
 
 from materials import registry
 from mpm_core import Scene, Simulation
-from mpm_core.columns import LXX, LYY, VX, VY, X, Y
+from mpm_core.columns import AFFINE, GRADIENT, VX, VY, X, Y
 from mpm_core.grid import COMPONENTS, MASS, OLD_VX, OLD_VY
 
 ELASTIC = {"bulk_modulus": 1e4, "poisson_ratio": 0.2}
@@ -97,7 +97,7 @@ def set_affine_velocity(body, velocity, gradient):
     """Give all points the velocity v + L x and the gradient L."""
     (vx, vy), gradient = velocity, np.asarray(gradient)
     body.points[[VX, VY]] = np.array([[vx], [vy]]) + gradient @ body.points[[X, Y]]
-    body.points[LXX : LYY + 1] = gradient.reshape(4, 1)
+    body.points[GRADIENT] = body.points[AFFINE] = gradient.reshape(4, 1)
 
 
 def node_mass_and_momentum(simulation):

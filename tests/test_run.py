@@ -20,7 +20,7 @@ from scenes_for_tests import (
 
 from materials import InputError, SimulationError
 from mpm_core import Scene, run
-from mpm_core.columns import LXX, VX, X, Y
+from mpm_core.columns import AXX, LXX, VX, X, Y
 from mpm_core.output.frame_series import read_collection
 from mpm_core.output.history import HISTORY_COLUMNS, read_history
 from mpm_core.output.run_folder import RunFolder
@@ -113,7 +113,7 @@ def ringing_bar(safety, time_constant):
     (body,) = case.bodies
     phase = 0.5 * np.pi * body.points[X] / 0.6
     body.points[VX] = 0.05 * np.sin(phase)
-    body.points[LXX] = 0.05 * 0.5 * np.pi / 0.6 * np.cos(phase)
+    body.points[LXX] = body.points[AXX] = 0.05 * 0.5 * np.pi / 0.6 * np.cos(phase)
     start = case.ledger.initial_kinetic = 0.5 * body.point_mass * float((body.velocities**2).sum())
     kinetic = []
     while case.time < 0.6:

@@ -8,7 +8,7 @@ import pytest
 from scenes_for_tests import BLOCK, COLUMN, momentum, node_mass_and_momentum, set_affine_velocity, simulation
 
 from mpm_core.basis import BASES
-from mpm_core.columns import LXX, LXY, LYX, LYY, SXX, SXY, VX, VY, X, Y
+from mpm_core.columns import AFFINE, LXY, LYX, LYY, SXX, SXY, VX, VY, X, Y
 
 BASIS_NAMES = list(BASES)
 # A hair above no step at all: the transfers happen, the stress and the positions stay.
@@ -26,7 +26,7 @@ def block(basis="quadratic", **changes):
 def test_mass_and_momentum_reach_the_grid_whole(basis, shape):
     case = block(basis, **{"body.0.shape": shape})
     (body,) = case.bodies
-    body.points[LXX : LYY + 1] = np.random.default_rng(1).normal(size=(4, body.count))
+    body.points[AFFINE] = np.random.default_rng(1).normal(size=(4, body.count))
     body.points[[VX, VY]] = np.random.default_rng(2).normal(size=(2, body.count))
     brought = momentum(case)
     case.step(INSTANT)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from materials.rheology import shear_modulus
 from mpm_core.body import Body
-from mpm_core.columns import LXX, LYY, SXX, SYY, VX, VY, X, Y
+from mpm_core.columns import AXX, AYY, LXX, LYY, SXX, SYY, VX, VY, X, Y
 from mpm_core.simulation import Simulation
 from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
 from validation.scenes import advance, simulation_of
@@ -141,7 +141,7 @@ def driven_square(cells: int, resolution: Resolution, force_factor: float = 1.0)
     body = simulation.bodies[0]
     places = body.points[[X, Y]].copy()
     body.points[[VX, VY]] = velocity(places, 0.0)
-    body.points[[LXX, LYY]] = velocity_gradient_at_start(places)
+    body.points[[LXX, LYY]] = body.points[[AXX, AYY]] = velocity_gradient_at_start(places)
     simulation.body_force = lambda moved, time: force_factor * body_force(places[:, moved.ids], time)
     found: list[tuple[float, float]] = []
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from materials import SimulationError
 from materials.rheology import shear_modulus
 from mpm_core.body import Body
-from mpm_core.columns import LXX, LXY, LYX, LYY, VX, VY, X, Y, allocate
+from mpm_core.columns import AFFINE, GRADIENT, VX, VY, X, Y, allocate
 from mpm_core.held_nodes import nodes_where
 from mpm_core.simulation import Simulation
 from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
@@ -107,7 +107,7 @@ def ring(cells: int, points_across_cell: int, angle: float) -> Simulation:
     points = allocate(like.points.shape[0], count)
     points[:] = like.points[:, :1]
     points[[X, Y]] = places
-    points[[LXX, LXY, LYX, LYY]] = velocity_gradient_at_start(places, angle)
+    points[GRADIENT] = points[AFFINE] = velocity_gradient_at_start(places, angle)
     radius, _ = polar(places)
     turn = swing(angle, 0.0)[1] * profile(radius)[0]
     points[[VX, VY]] = turn * np.array([-places[1], places[0]])

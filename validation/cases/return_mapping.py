@@ -32,7 +32,7 @@ def compiled() -> tuple[Callable[..., Any], Callable[..., Any]]:
     law = pointwise_law(LAW)
     step, state = registered(cam_clay.cam_clay_step), registered(cam_clay.yield_state)
     first, is_on_surface = registered(cam_clay.first_bracket), registered(cam_clay.is_on_yield_surface)
-    narrowed = registered(cam_clay.narrowed)
+    trial, narrowed = registered(cam_clay.elastic_trial), registered(cam_clay.narrowed)
 
     @njit(cache=True)
     @named(law.mark)
@@ -66,11 +66,10 @@ def compiled() -> tuple[Callable[..., Any], Callable[..., Any]]:
             shear = SymmetricTensor(
                 cases[8, k] + third, cases[9, k] + third, cases[10, k] + third, cases[11, k], cases[12, k], cases[13, k]
             )
-            growth = compression / constants.swelling_index
-            wetness = np.log(2.0 * cases[0, k] / cases[1, k]) + growth
-            bracket = first(wetness)
+            start = trial(cases[0, k], s, compression, shear, cases[1, k], constants)
+            bracket = first(start.wetness)
             for count in range(1, longest + 1):
-                new = state(bracket.theta, cases[0, k], s, growth, wetness, shear, constants)
+                new = state(bracket.theta, start, constants)
                 counts[k] = count
                 if is_on_surface(new):
                     break

@@ -41,7 +41,7 @@ def collision(changes: dict[str, Any]) -> np.ndarray:
     rows = [(0.0, 1.0, 0.0, 0.0)]
 
     def observe(present: Simulation) -> None:
-        kinetic = sum(0.5 * body.point_mass * float((body.velocities**2).sum()) for body in present.bodies)
+        kinetic = present.ledger.kinetic
         elastic = sum(elastic_energy(body) for body in present.bodies)
         change = float(np.abs(momentum(present) - start).max())
         rows.append((present.time, kinetic / initial, elastic / initial, change / scale))
