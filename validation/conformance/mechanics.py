@@ -18,7 +18,10 @@ SHEAR_AMPLITUDE = 0.02
 # Of the trapezoidal rule, in the work of a path and in the energy that unloading returns.
 WORK_ERROR, STORED_ERROR = 1e-3, 0.05
 PROBE_STRAIN, PROBE_STEP = 1e-6, 1e-5
-ALLOWED_EXCESS = 1e-3
+# Of the stiffness, 5 % in the speed: in plastic flow a strength mu p adds up to (mu K)^2/(4 G) to the K + 4/3 G of an
+# elastic wave, 6 % at mu = 0.6, and no law counts that. The floor keeps traces of pressure out of the quotient.
+ALLOWED_EXCESS = 0.1
+FLOOR = 1e-3
 LEAST_ORDER = 0.7
 
 
@@ -110,7 +113,7 @@ def convergence(subject: Subject) -> Outcome:
 def sound_speed(subject: Subject) -> Outcome:
     """Rho c^2 is never below the stiffness that a small strain measures, in any state along the paths."""
     random = np.random.default_rng(0)
-    floor = ALLOWED_EXCESS * subject.stiffness(subject.at_rest(subject.pressure))
+    floor = FLOOR * subject.stiffness(subject.at_rest(subject.pressure))
     states = [subject.at_rest(share * subject.pressure) for share in (0.1, 1.0, 10.0)]
     states += [_compressed(subject, share) for share in (-0.5, 2.0, 20.0)]
     states += [call.end for call in subject.calls[::10]]
