@@ -77,7 +77,7 @@ def test_every_check_has_its_deliberate_mistake():
 
 
 def test_header_without_equations_is_caught(tmp_path):
-    text = '"""A law."""\n' + SOUND_LAW.partition('"""\n')[2].partition('"""\n')[2]
+    text = '"""A law."""\n' + SOUND_LAW.partition('"""\n')[2]
     assert verdicts(law_of(text, tmp_path))["declarations"].reason.startswith("the header of law_under_test.py")
 
 

@@ -20,6 +20,7 @@ BASE["Pa"] = BASE["N"] / LENGTH**2
 BASE["J"] = BASE["N"] * LENGTH
 _FACTOR = re.compile(r"([./]?)([A-Za-z]+|1)(\d*)")
 SMALLEST_HEADER = 5
+LOWER_END, UPPER_END = 0.02, 0.98
 
 
 def declarations(subject: Subject) -> Outcome:
@@ -100,17 +101,27 @@ def bounds(subject: Subject) -> Outcome:
 def _draws(subject: Subject) -> Iterator[dict[str, float]]:
     """Each parameter near either end of its bounds, the others as they are; then all of them anywhere."""
     declared, values = subject.law.parameter_declarations, subject.parameters._asdict()
-    for share in (0.02, 0.98):
+    for share in (LOWER_END, UPPER_END):
         for name, found in declared.items():
             yield {**values, name: _between(found, values[name], share)}
     random = np.random.default_rng(0)
     for _ in range(10 * subject.effort):
-        yield {name: _between(found, values[name], random.uniform(0.02, 0.98)) for name, found in declared.items()}
+        yield {
+            name: _between(found, values[name], random.uniform(LOWER_END, UPPER_END))
+            for name, found in declared.items()
+        }
 
 
 def _between(declaration: Parameter, value: float, share: float) -> float:
-    """A value at a share of the way between finite bounds, else from a third of the value to three times it."""
+    """A value at a share of the way between finite bounds, else from a third of the value to three times it.
+
+    At the ends of the way, it is the bound itself where that belongs to the allowed values.
+    """
     interval = declaration.interval
+    if share == LOWER_END and not interval.lower_open:
+        return interval.lower
+    if share == UPPER_END and not interval.upper_open:
+        return interval.upper
     if math.isfinite(interval.lower) and math.isfinite(interval.upper):
         return interval.lower + share * (interval.upper - interval.lower)
     return min(max(value * 10.0 ** (share - 0.5), interval.lower), interval.upper)
