@@ -31,7 +31,7 @@ def draw(findings: Findings, path: Path) -> None:
         for (data, measured), (upper, lower) in zip(panels, axes.T, strict=True):
             _draw_fit(findings, data, measured, upper)
             _draw_residuals(findings, data, measured, lower)
-        axes[0, 0].legend(framealpha=0.8, edgecolor="none")
+        axes[0, 0].legend(loc="lower right", framealpha=0.8, edgecolor="none")
         title = f"{findings.fit.model.law.name}: " + ", ".join(_estimates(findings))
         figure.suptitle(textwrap.fill(title, LETTERS_PER_PANEL * len(panels)), fontsize=10)
         with replacing(path) as partial:
