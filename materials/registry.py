@@ -93,6 +93,8 @@ class Registry:
         manager.add_hookspecs(MaterialHooks)
         try:
             manager.register(module, name)
+            # A hook that this version does not know: misspelt, or of a later version.
+            manager.check_pending()
             laws = [law for found in manager.hook.grainlaw_materials() for law in found]
         except Exception as error:
             self._refuse(name, origin, f"hook grainlaw_materials raises {type(error).__name__}: {error}")

@@ -99,6 +99,7 @@ def test_commands_of_a_page_work(page: Path, tmp_path: Path):
 def test_pages_show_commands_to_run():
     assert {page.stem for page in RUNNABLE_PAGES} >= {
         "README",
+        "calibration",
         "command-line",
         "element-tests",
         "output",

@@ -6,7 +6,8 @@ from textwrap import dedent
 
 import pytest
 
-from materials import InputError, get_material, registry
+from materials import HOOK_VERSION, InputError, get_material, registry
+from materials.law import OLDEST_HOOK_VERSION
 from materials.registry import Registry
 
 LAW_FILE = '''
@@ -66,7 +67,14 @@ FAULTS = {
     "state without doc": ({"state": 'Annotated[float, StateVariable("1", "")]'}, "'damage' declares no doc"),
     "no summary": ({"summary": ""}, "no summary"),
     "bad name": ({"name": "Spring-1"}, "'Spring-1' is not lower_case"),
-    "other hook version": ({"extra": ", hook_version=2"}, "hook version 2"),
+    "later hook version": (
+        {"extra": f", hook_version={HOOK_VERSION + 1}"},
+        f"written for hook version {HOOK_VERSION + 1}; this grainlaw understands 1 to {HOOK_VERSION}: it needs a newer",
+    ),
+    "earlier hook version": (
+        {"extra": f", hook_version={OLDEST_HOOK_VERSION - 1}"},
+        f"written for hook version {OLDEST_HOOK_VERSION - 1}; this grainlaw understands 1 to {HOOK_VERSION}: the law",
+    ),
     "set out of bounds": ({"value": "-1.0"}, "stiffness is outside (0, inf)"),
     "NaN at its own values": (
         {"body": 'return scaled(stress, float("nan")), state'},
@@ -150,6 +158,15 @@ def test_raising_hook_is_refused(tmp_path):
             """,
             "returned int, not a Law",
         ),
+        (
+            """
+            from materials import hookimpl
+            @hookimpl
+            def grainlaw_materails():
+                return []
+            """,
+            "unknown hook 'grainlaw_materails'",
+        ),
     ],
 )
 def test_file_that_is_no_plugin_is_refused(text, reason, tmp_path):
@@ -158,6 +175,12 @@ def test_file_that_is_no_plugin_is_refused(text, reason, tmp_path):
     with pytest.raises(InputError) as error:
         Registry().load_file(path)
     assert reason in str(error.value)
+
+
+def test_law_that_states_no_hook_version_is_of_the_first(tmp_path):
+    found = Registry()
+    found.load_file(plugin_file(tmp_path))
+    assert found.get("spring").law.hook_version == 1
 
 
 def test_missing_file_is_refused(tmp_path):

@@ -57,10 +57,12 @@ def followed(installation, tmp_path_factory):
     return folder / "cemented-sand"
 
 
-def test_wheel_holds_the_laws_and_not_the_template(installation):
+def test_wheel_holds_the_laws_and_the_template(installation):
     names = zipfile.ZipFile(installation[1]).namelist()
     assert "plugins/mu_i_lc.py" in names
-    assert [name for name in names if name.startswith("plugins/template") or "coulomb" in name] == []
+    template = {path.name for path in (ROOT / "plugins" / "template").iterdir() if path.is_file()}
+    assert {name.removeprefix("plugins/template/") for name in names if "/template/" in name} == template
+    assert "validation/calibration/data/plane_shear_liggghts.csv" in names
     assert {name.partition("/")[0] for name in names if ".dist-info" not in name} == set(SOURCES[:5])
 
 
@@ -84,23 +86,73 @@ def test_element_tests_wrote_history_and_figure(followed):
 
 def test_column_collapsed_and_cohesion_held_it_back(followed):
     runout = {}
-    for name in ("collapse", "collapse-without-cohesion"):
+    for name in ("collapse", "loose"):
         assert (followed / name / "run.pvd").is_file()
         runout[name] = json.loads((followed / name / "summary.json").read_text())["final"]["runout"]
-    assert 0.2 < runout["collapse"] < 0.8 * runout["collapse-without-cohesion"]
+    assert 0.2 < runout["collapse"] < 0.8 * runout["loose"]
     assert (followed / "comparison" / "snapshots.png").read_bytes().startswith(b"\x89PNG")
     assert "plastic_shear_strain" in (followed / "collapse" / "quantities.csv").read_text()
 
 
-def test_template_itself_is_a_sound_law(installation, tmp_path):
-    """Before any edit: its own tests pass beside the installed grainlaw."""
-    package = shutil.copytree(ROOT / "plugins" / "template", tmp_path / "template")
+UNWRITTEN = "    factor = 1.0 if p > 0.0 else 0.0\n"
+WRITTEN = """\
+    strength = parameters.critical_state_ratio * p / math.sqrt(3.0)
+    factor = min(1.0, strength / max(half_norm(trial), 1e-300))
+"""
+
+
+def test_new_law_fails_its_test_until_it_is_written_and_then_passes_every_check(installation, tmp_path):
+    def command(*arguments, folder=tmp_path / "green-sand"):
+        return subprocess.run(
+            [installation[0] / arguments[0], *arguments[1:]], cwd=folder, capture_output=True, text=True, check=False
+        )
+
+    def tested():
+        return command("python", "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_green_sand.py")
+
+    made = command("grainlaw", "new-law", "green_sand", folder=tmp_path)
+    assert made.returncode == 0, made.stderr
+    law = tmp_path / "green-sand" / "green_sand.py"
+    assert "coulomb" not in "".join(path.read_text() for path in law.parent.iterdir())
+    unfinished = tested()
+    assert "1 failed, 3 passed" in unfinished.stdout
+    assert "test_large_shear_stays_on_the_yield_surface" in unfinished.stdout
+
+    text = law.read_text()
+    assert text.count(UNWRITTEN) == 1
+    text = text.replace(UNWRITTEN, WRITTEN).replace("    deviator,\n", "    deviator,\n    half_norm,\n")
+    law.write_text(text.replace("from typing import", "import math\nfrom typing import", 1))
+    assert "4 passed" in tested().stdout
+    checked = command("grainlaw", "check", "green_sand", "--quick", "--plugin", "green_sand.py")
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+    run = command(
+        "grainlaw", "run", "collapse.toml", "--plugin", "green_sand.py", "--out", "collapse",
+        "--set", "grid.cell_size=0.1", "--set", "time.end=0.1",
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    assert list((law.parent / "collapse").glob("*.png"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["Green-Sand"], "'Green-Sand' is no name for a law; allowed: lower_case_with_underscores"),
+        (["lambda"], "'lambda' is no name for a law"),
+        (["mu_i_lc"], "the name 'mu_i_lc' is taken by grainlaw"),
+        (["random"], "the name 'random' is that of another Python module"),
+        (["green_sand", "--out", "taken"], "taken exists already; choose another folder with --out"),
+    ],
+)
+def test_new_law_refuses_what_it_cannot_write(arguments, message, tmp_path):
+    (tmp_path / "taken").mkdir()
     done = subprocess.run(
-        [installation[0] / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_coulomb_example.py"],
-        cwd=package,
+        [sys.executable, "-m", "grainlaw", "new-law", *arguments],
+        cwd=tmp_path,
         capture_output=True,
         text=True,
         check=False,
     )
-    assert done.returncode == 0, done.stdout
-    assert "4 passed" in done.stdout
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: ")
+    assert message in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["taken"]

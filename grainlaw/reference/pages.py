@@ -7,18 +7,23 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+from grainlaw.reference.calibration_tables import experiment_tables, quantity_table
 from grainlaw.reference.command_page import command_reference
+from grainlaw.reference.conformance_table import conformance_table
 from grainlaw.reference.element_tables import element_test_reference
 from grainlaw.reference.law_pages import law_page, law_table, own_laws, state_variable_table
 from grainlaw.reference.output_tables import field_table, history_table
 from grainlaw.reference.scene_tables import scene_reference
 
 PARTS: dict[str, Callable[[], str]] = {
+    "calibration tests": experiment_tables,
     "commands": command_reference,
+    "conformance checks": conformance_table,
     "element tests": element_test_reference,
     "fields": field_table,
     "history columns": history_table,
     "laws": law_table,
+    "measured quantities": quantity_table,
     "scene keys": scene_reference,
     "state variables": state_variable_table,
 }

@@ -1,4 +1,4 @@
-"""Cohesionless elastic, perfectly plastic Drucker-Prager law with linear compression: the template of a law.
+"""Cohesionless elastic, perfectly plastic Drucker-Prager law with linear compression: a law to complete.
 
     p      = K (phi/phi_ref - 1), stress-free where phi <= phi_ref                           (1)
     s_dot  = 2 G D_d,   G = 3 (1 - 2 nu) / (2 (1 + nu)) K                                    (2)
@@ -10,7 +10,6 @@ phi_ref follows for each point from its initial pressure and density, so that th
 Valid for slow flow at critical state: the law knows neither rate nor dilatancy.
 """
 
-import math
 from typing import Annotated, Any, NamedTuple
 
 from materials import (
@@ -22,7 +21,6 @@ from materials import (
     added,
     assembled_stress,
     deviator,
-    half_norm,
     hookimpl,
     longitudinal_wave_speed,
     pressure,
@@ -62,22 +60,20 @@ def update(
     parameters: Parameters,
     dt: float,
 ) -> tuple[SymmetricTensor, State]:
-    """Linear compression, elastic predictor, radial return."""
+    """Linear compression (1) and elastic shear (2); the return to the yield surface (3) is still to be written."""
     solid_fraction = density / parameters.grain_density
     p = max(0.0, parameters.bulk_modulus * (solid_fraction / state.reference_solid_fraction - 1.0))
 
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
     trial = added(deviator(stress), scaled(deviator(strain_rate), 2.0 * modulus * dt))
-    trial_q = math.sqrt(3.0) * half_norm(trial)
-    yield_q = parameters.critical_state_ratio * p
-    factor = min(1.0, yield_q / max(trial_q, 1e-300))
+    factor = 1.0 if p > 0.0 else 0.0
     return assembled_stress(p, scaled(trial, factor)), state
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves."""
+    """Speed of longitudinal elastic waves; by Eq. 1 the bulk stiffness dp/d(ln rho) is K + p."""
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
+    return longitudinal_wave_speed(parameters.bulk_modulus + max(0.0, pressure(stress)), modulus, density)
 
 
 def density_at_rest(mean_pressure: float, parameters: Parameters) -> float:
@@ -87,7 +83,7 @@ def density_at_rest(mean_pressure: float, parameters: Parameters) -> float:
 
 LAW = Law(
     name="coulomb_example",
-    summary="cohesionless elastic, perfectly plastic Drucker-Prager law: the template of a law",
+    summary="cohesionless elastic, perfectly plastic Drucker-Prager law, to be completed",
     parameters=Parameters,
     state=State,
     initial_state=initial_state,
@@ -100,6 +96,7 @@ LAW = Law(
             density_at_rest,
         )
     },
+    hook_version=1,
 )
 
 

@@ -1,4 +1,4 @@
-"""The law on one point: what its three equations say."""
+"""The law on one point: what its three equations say. The third fails until `update` has been completed."""
 
 import pytest
 

@@ -44,9 +44,8 @@ class Coordinate:
         """Values at coordinate -+ half_width, within the bounds."""
         lowest, highest = self.bounds
         below, above = max(lowest, coordinate - half_width), min(highest, coordinate + half_width)
-        if self.logarithmic and above > LARGEST_EXPONENT:
-            return self.value(below), math.inf
-        return self.value(below), self.value(above)
+        lower = 0.0 if self.logarithmic and below < -LARGEST_EXPONENT else self.value(below)
+        return lower, math.inf if self.logarithmic and above > LARGEST_EXPONENT else self.value(above)
 
 
 def coordinate(name: str, declaration: Parameter, start: float) -> Coordinate:

@@ -63,8 +63,8 @@ class SteadyShearSettings(NamedTuple):
     grain_diameter: GrainDiameter = 0.005
     strain_to_steady: Annotated[
         float, Parameter("1", "strain eps_xy at each inertial number, to become steady", "(0, inf)")
-    ] = 3.0
-    strain_step: StrainStep = 2e-3
+    ] = 10.0
+    strain_step: StrainStep = 5e-3
 
 
 @dataclass(frozen=True)

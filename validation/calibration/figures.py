@@ -1,5 +1,6 @@
 """The picture of a calibration: data and law above, weighted residuals below, one column per measured quantity."""
 
+import textwrap
 from pathlib import Path
 
 import matplotlib as mpl
@@ -16,6 +17,7 @@ from validation.calibration.quantities import QUANTITIES
 
 DATA_COLOUR, LAW_COLOUR = "#333333", "#d95f02"
 POINTS_BETWEEN_ROWS = 6
+LETTERS_PER_PANEL = 52
 
 Array = NDArray[np.float64]
 
@@ -29,15 +31,16 @@ def draw(findings: Findings, path: Path) -> None:
         for (data, measured), (upper, lower) in zip(panels, axes.T, strict=True):
             _draw_fit(findings, data, measured, upper)
             _draw_residuals(findings, data, measured, lower)
-        axes[0, 0].legend(frameon=False)
-        figure.suptitle(f"{findings.fit.model.law.name}: " + ", ".join(_estimates(findings)))
+        axes[0, 0].legend(loc="lower right", framealpha=0.8, edgecolor="none")
+        title = f"{findings.fit.model.law.name}: " + ", ".join(_estimates(findings))
+        figure.suptitle(textwrap.fill(title, LETTERS_PER_PANEL * len(panels)), fontsize=10)
         with replacing(path) as partial:
             figure.savefig(partial, dpi=130)
 
 
 def _estimates(findings: Findings) -> list[str]:
     return [
-        f"{found.name} = {found.value:.3g}{'' if found.determined else ' (undetermined)'}"
+        f"{found.name}\u00a0=\u00a0{found.value:.3g}{'' if found.determined else ' (undetermined)'}"
         for found in findings.estimates
     ]
 
@@ -55,12 +58,13 @@ def _draw_fit(findings: Findings, data: DataSet, measured: Measured, axes: Axes)
         color=DATA_COLOUR,
         label="data, 95 %" if errors is not None else "data",
     )
-    between = _between_rows(data.abscissa)
+    at_fixed_numbers = data.experiment.name == "steady-shear"
+    between = _between_rows(data.abscissa if at_fixed_numbers else np.concatenate([[0.0], data.abscissa]))
     curve = answer(fit.model.history(data, fit.values, between), measured)
     axes.plot(between, curve, color=LAW_COLOUR, lw=1.5, label=fit.model.law.name)
     axes.set_title(data.label, fontsize=9)
     axes.set_ylabel(_label(measured.name, QUANTITIES[measured.name].unit))
-    if data.experiment.name == "steady-shear":
+    if at_fixed_numbers:
         axes.set_xscale("log")
 
 

@@ -143,7 +143,7 @@ class Findings:
                 yield f"{names[0].name} and {names[1].name} are correlated ({value:.3f}): use them together only"
 
     def _quality(self) -> Iterator[str]:
-        if not self.fit.converged:
+        if not self.fit.converged and all(found.determined for found in self.estimates):
             yield "the search was stopped before it came to an end; begin it nearer to the solution"
         for found, u in zip(self.fit.coordinates, self.fit.solution.tolist(), strict=True):
             lowest, highest = found.bounds

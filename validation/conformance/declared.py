@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -19,6 +20,7 @@ BASE["Pa"] = BASE["N"] / LENGTH**2
 BASE["J"] = BASE["N"] * LENGTH
 _FACTOR = re.compile(r"([./]?)([A-Za-z]+|1)(\d*)")
 SMALLEST_HEADER = 5
+LOWER_END, UPPER_END = 0.02, 0.98
 
 
 def declarations(subject: Subject) -> Outcome:
@@ -81,33 +83,48 @@ def units(subject: Subject) -> Outcome:
 
 def bounds(subject: Subject) -> Outcome:
     """Parameters anywhere within their bounds are refused as contradictory or give finite answers."""
-    random = np.random.default_rng(0)
     law = subject.law
-    draws, refused = 10 * subject.effort, 0
-    for _ in range(draws):
-        values = {
-            name: _drawn(found, getattr(subject.parameters, name), random)
-            for name, found in law.parameter_declarations.items()
-        }
+    draws, refused = list(_draws(subject)), 0
+    for values in draws:
         parameters = law.parameters(**values)
         if law.contradiction(parameters):
             refused += 1
             continue
         fault = _fault_of(subject, parameters)
         if fault:
-            unusual = ", ".join(f"{name} = {value:.3g}" for name, value in values.items())
-            return Outcome("FAIL", f"{fault} at {unusual}")
-    return Outcome("pass", f"{draws} draws, {refused} refused as contradictory, the others finite")
+            return Outcome(
+                "FAIL", f"{fault} at " + ", ".join(f"{name} = {value:.3g}" for name, value in values.items())
+            )
+    return Outcome("pass", f"{len(draws)} draws, {refused} refused as contradictory, the others finite")
 
 
-def _drawn(declaration: Parameter, value: float, random: np.random.Generator) -> float:
+def _draws(subject: Subject) -> Iterator[dict[str, float]]:
+    """Each parameter near either end of its bounds, the others as they are; then all of them anywhere."""
+    declared, values = subject.law.parameter_declarations, subject.parameters._asdict()
+    for share in (LOWER_END, UPPER_END):
+        for name, found in declared.items():
+            yield {**values, name: _between(found, values[name], share)}
+    random = np.random.default_rng(0)
+    for _ in range(10 * subject.effort):
+        yield {
+            name: _between(found, values[name], random.uniform(LOWER_END, UPPER_END))
+            for name, found in declared.items()
+        }
+
+
+def _between(declaration: Parameter, value: float, share: float) -> float:
+    """A value at a share of the way between finite bounds, else from a third of the value to three times it.
+
+    At the ends of the way, it is the bound itself where that belongs to the allowed values.
+    """
     interval = declaration.interval
+    if share == LOWER_END and not interval.lower_open:
+        return interval.lower
+    if share == UPPER_END and not interval.upper_open:
+        return interval.upper
     if math.isfinite(interval.lower) and math.isfinite(interval.upper):
-        width = interval.upper - interval.lower
-        return float(random.uniform(interval.lower + 0.02 * width, interval.upper - 0.02 * width))
-    if interval.contains(0.0):
-        return float(value * random.uniform(0.0, 2.0))
-    return min(max(float(value * 10.0 ** random.uniform(-0.5, 0.5)), interval.lower), interval.upper)
+        return interval.lower + share * (interval.upper - interval.lower)
+    return min(max(value * 10.0 ** (share - 0.5), interval.lower), interval.upper)
 
 
 def _fault_of(subject: Subject, parameters: object) -> str:

@@ -17,8 +17,13 @@ NO_STRAIN = isotropic(0.0)
 SHEAR_AMPLITUDE = 0.02
 # Of the trapezoidal rule, in the work of a path and in the energy that unloading returns.
 WORK_ERROR, STORED_ERROR = 1e-3, 0.05
-PROBE_STRAIN, PROBE_STEP = 1e-6, 1e-5
-ALLOWED_EXCESS = 1e-3
+PROBE_STRAIN = 1e-6
+# The step of the probe is the one of a run at this safety on cells of this size [m], those of the paper's collapse.
+SAFETY, CELL_SIZE = 0.4, 0.00625
+# Of the stiffness, 5 % in the speed: in plastic flow a strength mu p adds up to (mu K)^2/(4 G) to the K + 4/3 G of an
+# elastic wave, 6 % at mu = 0.6, and no law counts that. The floor keeps traces of pressure out of the quotient.
+ALLOWED_EXCESS = 0.1
+FLOOR = 1e-3
 LEAST_ORDER = 0.7
 
 
@@ -110,7 +115,9 @@ def convergence(subject: Subject) -> Outcome:
 def sound_speed(subject: Subject) -> Outcome:
     """Rho c^2 is never below the stiffness that a small strain measures, in any state along the paths."""
     random = np.random.default_rng(0)
-    floor = ALLOWED_EXCESS * subject.stiffness(subject.at_rest(subject.pressure))
+    start = subject.at_rest(subject.pressure)
+    floor = FLOOR * subject.stiffness(start)
+    dt = SAFETY * CELL_SIZE / subject.law.sound_speed(*start, subject.parameters)
     states = [subject.at_rest(share * subject.pressure) for share in (0.1, 1.0, 10.0)]
     states += [_compressed(subject, share) for share in (-0.5, 2.0, 20.0)]
     states += [call.end for call in subject.calls[::10]]
@@ -121,7 +128,7 @@ def sound_speed(subject: Subject) -> Outcome:
             return Outcome(
                 "FAIL", f"the speed of sound is {math.sqrt(stiffness / state.density) if stiffness > 0 else stiffness}"
             )
-        worst = max(worst, _measured_stiffness(subject, state, random) / (stiffness + floor))
+        worst = max(worst, _measured_stiffness(subject, state, dt, random) / (stiffness + floor))
     if worst <= 1.0 + ALLOWED_EXCESS:
         return Outcome("pass", f"measured stiffness up to {worst:.3g} of rho c^2")
     return Outcome("FAIL", f"the measured stiffness is {worst:.3g} times rho c^2: a run would take too large a step")
@@ -175,9 +182,9 @@ def _compressed(subject: Subject, share: float) -> PointState:
     return point
 
 
-def _measured_stiffness(subject: Subject, state: PointState, random: np.random.Generator) -> float:
-    """The largest stiffness [Pa] against small plane waves, longitudinal and transverse, of either sign."""
-    still = _matrix(subject.moved(state, NO_STRAIN, PROBE_STEP).stress)
+def _measured_stiffness(subject: Subject, state: PointState, dt: float, random: np.random.Generator) -> float:
+    """The largest stiffness [Pa] against small plane waves in a step, longitudinal and transverse, of either sign."""
+    still = _matrix(subject.moved(state, NO_STRAIN, dt).stress)
     largest = 0.0
     frame, _ = np.linalg.qr(random.standard_normal((3, 3)))
     for axes in (np.eye(3), frame):
@@ -185,7 +192,7 @@ def _measured_stiffness(subject: Subject, state: PointState, random: np.random.G
             for along in (normal, (normal + 1) % 3):
                 for strain in (-PROBE_STRAIN, PROBE_STRAIN):
                     gradient = strain * np.outer(axes[normal], axes[along])
-                    rate = _tensor(0.5 * (gradient + gradient.T) / PROBE_STEP)
-                    change = _matrix(subject.moved(state, rate, PROBE_STEP).stress) - still
+                    rate = _tensor(0.5 * (gradient + gradient.T) / dt)
+                    change = _matrix(subject.moved(state, rate, dt).stress) - still
                     largest = max(largest, float(axes[normal] @ change @ axes[along]) / strain)
     return largest

@@ -8,20 +8,44 @@ from validation.conformance.outcome import Check, Outcome
 from validation.conformance.subject import Subject
 
 CHECKS = (
-    Check("declarations", "every quantity has unit and meaning, the header its equations", declared.declarations),
-    Check("units", "the equations agree with the declared units", declared.units),
-    Check("bounds", "all parameters within bounds work", declared.bounds),
-    Check("equilibrium", "the initial state is at rest", mechanics.equilibrium),
-    Check("objectivity", "rotated input, rotated output", mechanics.objectivity),
-    Check("tension", "no tension, or declared", mechanics.tension),
-    Check("dissipation", "closed paths give no energy", mechanics.dissipation),
-    Check("convergence", "smaller steps, smaller error", mechanics.convergence),
-    Check("sound speed", "never below the measured stiffness", mechanics.sound_speed),
-    Check("finite", "numbers at p = 0, opened and closed", code.finite),
-    Check("pure", "same input, same output", code.pure),
-    Check("compiled", "plain Python and compiled code agree", code.compiled),
-    Check("ptx", "compiles for a GPU", code.ptx),
-    Check("cost", "time of one update", code.cost),
+    Check(
+        "declarations",
+        "every quantity states its unit, meaning and bounds, the header its equations",
+        declared.declarations,
+    ),
+    Check("units", "in other units of length, mass and time the answers are the same", declared.units),
+    Check(
+        "bounds",
+        "parameters at and between their bounds give numbers, or are refused as contradictory",
+        declared.bounds,
+    ),
+    Check("equilibrium", "without strain, an initial state stays as it is", mechanics.equilibrium),
+    Check(
+        "objectivity",
+        "rotated stress and strain rate give the rotated stress and the same state",
+        mechanics.objectivity,
+    ),
+    Check("tension", "the pressure is never negative, unless `carries_tension` is declared", mechanics.tension),
+    Check(
+        "dissipation",
+        "along closed paths of strain a point gives no more energy than it held at the start",
+        mechanics.dissipation,
+    ),
+    Check(
+        "convergence",
+        "the stress at the end of a path converges with the step, with order 0.7 or better",
+        mechanics.convergence,
+    ),
+    Check(
+        "sound speed",
+        "rho c^2 is no more than 10 % below the stiffness against small waves, in the step of a run",
+        mechanics.sound_speed,
+    ),
+    Check("finite", "stress, state and wave speed are numbers at p = 0, opened and closed again", code.finite),
+    Check("pure", "the same input gives the same output, however often and in whatever order", code.pure),
+    Check("compiled", "compiled code gives the bits of plain Python", code.compiled),
+    Check("ptx", "the update compiles for a GPU; skipped without numba-cuda", code.ptx),
+    Check("cost", "nanoseconds of one compiled update in shear flow; a report, not a limit", code.cost),
 )
 QUICK, FULL = 1, 4
 
