@@ -12,6 +12,7 @@ from materials.rheology import (
     inertial_number,
     longitudinal_wave_speed,
     own_inertial_number_constant,
+    plastic_shear_rate,
     shear_modulus,
 )
 from materials.tensor import (
@@ -65,6 +66,7 @@ __all__ = [
     "log_volume_of_figure_1",
     "longitudinal_wave_speed",
     "own_inertial_number_constant",
+    "plastic_shear_rate",
     "pointwise",
     "pressure",
     "registry",

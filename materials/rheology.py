@@ -21,6 +21,32 @@ def friction_of_inertial_number(
 
 
 @pointwise
+def plastic_shear_rate(
+    trial_shear_stress: float,
+    pressure: float,
+    stiffness: float,
+    static_friction: float,
+    dynamic_friction: float,
+    reference_rate: float,
+) -> float:
+    """The root x >= 0 of tau_trial - stiffness x = mu(I(x)) p [1/s]; zero below the static yield stress.
+
+    A quadratic in x (backward Euler over a step, after Dunatunga & Kamrin 2015, J. Fluid Mech. 779). The stiffness
+    [Pa s] is 2 G dt and the reference rate [1/s] that of I = I_0, I_0 sqrt(p/rho_p)/d_p.
+    """
+    static_stress = static_friction * pressure
+    if trial_shear_stress <= static_stress:
+        return 0.0
+    # stiffness x^2 - b x - c = 0
+    b = trial_shear_stress - dynamic_friction * pressure - stiffness * reference_rate
+    c = reference_rate * (trial_shear_stress - static_stress)
+    root = math.sqrt(b * b + 4.0 * stiffness * c)
+    # Of the two forms of the root, the one that subtracts nothing.
+    numerator, denominator = (b + root, 2.0 * stiffness) if b > 0.0 else (2.0 * c, max(root - b, 1e-300))
+    return numerator / denominator
+
+
+@pointwise
 def shear_modulus(bulk_modulus: float, poisson_ratio: float) -> float:
     """G = 3 (1 - 2 nu) / (2 (1 + nu)) K [Pa]."""
     return 1.5 * (1.0 - 2.0 * poisson_ratio) / (1.0 + poisson_ratio) * bulk_modulus

@@ -37,7 +37,7 @@ from materials import (
     half_norm,
     hookimpl,
     longitudinal_wave_speed,
-    pointwise,
+    plastic_shear_rate,
     pressure,
     scaled,
     shear_modulus,
@@ -89,33 +89,22 @@ def update(
     stiffness = 2.0 * shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio) * dt
     trial = added(deviator(stress), scaled(deviator(strain_rate), stiffness))
     trial_shear_stress = half_norm(trial)
-    plastic_rate = plastic_shear_rate(trial_shear_stress, new_pressure, stiffness, parameters)
-    remaining = trial_shear_stress - stiffness * plastic_rate
-    factor = max(0.0, remaining) / max(trial_shear_stress, 1e-300)
-    return assembled_stress(new_pressure, scaled(trial, factor if new_pressure > 0.0 else 0.0)), state
-
-
-@pointwise
-def plastic_shear_rate(
-    trial_shear_stress: float, new_pressure: float, stiffness: float, parameters: Parameters
-) -> float:
-    """The root x >= 0 of tau_trial - stiffness x = mu(I(x)) p [1/s]; zero below the static yield stress."""
-    static_stress = parameters.static_friction * new_pressure
-    if trial_shear_stress <= static_stress:
-        return 0.0
-    dynamic_stress = parameters.dynamic_friction * new_pressure
-    # the rate at which I = I_0; its constant part is computed once for all points
+    # where I = I_0; the factor before the root is the same for all points and computed once
     rate_at_unit_pressure = parameters.inertial_number_constant / (
         parameters.grain_diameter * math.sqrt(parameters.grain_density)
     )
     reference_rate = rate_at_unit_pressure * math.sqrt(new_pressure)
-    # stiffness x^2 - b x - c = 0
-    b = trial_shear_stress - dynamic_stress - stiffness * reference_rate
-    c = reference_rate * (trial_shear_stress - static_stress)
-    root = math.sqrt(b * b + 4.0 * stiffness * c)
-    # Of the two forms of the root, the one that subtracts nothing.
-    numerator, denominator = (b + root, 2.0 * stiffness) if b > 0.0 else (2.0 * c, max(root - b, 1e-300))
-    return numerator / denominator
+    plastic_rate = plastic_shear_rate(
+        trial_shear_stress,
+        new_pressure,
+        stiffness,
+        parameters.static_friction,
+        parameters.dynamic_friction,
+        reference_rate,
+    )
+    remaining = trial_shear_stress - stiffness * plastic_rate
+    factor = max(0.0, remaining) / max(trial_shear_stress, 1e-300)
+    return assembled_stress(new_pressure, scaled(trial, factor if new_pressure > 0.0 else 0.0)), state
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
