@@ -43,6 +43,14 @@ SUITES: dict[str, tuple[str, ...]] = {
         "leaving_the_domain",
         "step_limit",
     ),
+    # Collapses against finer grids, other frames and experiments.
+    "collapses": (
+        "grid_convergence",
+        "runout_scaling",
+        "aluminium_bars",
+        "moving_frame",
+        "turned_scene",
+    ),
 }
 NAMES = tuple(name for suite in SUITES.values() for name in suite)
 
