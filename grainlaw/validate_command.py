@@ -25,18 +25,21 @@ def validate(
         Path | None,
         typer.Option("--out", metavar="DIR", help="Write results.json, junit.xml and report.html into this folder."),
     ] = None,
-    list_cases: Annotated[bool, typer.Option("--list", help="List the cases and what each proves.")] = False,
+    list_cases: Annotated[
+        bool, typer.Option("--list", help="List the suites, their cases and what each proves.")
+    ] = False,
 ) -> None:
-    """Run validation cases: each has a reference, a band and a negative control that must leave the band.
+    """Run validation cases or suites: each case has a reference, a band and a negative control that must leave it.
 
     Exit code 1 if a case leaves its band or a control does not.
     """
-    from validation.catalogue import chosen_cases
+    from validation.catalogue import SUITES, chosen_cases
 
-    cases = chosen_cases(names or [])
     if list_cases:
-        _print_list(cases)
+        for suite in names or SUITES:
+            _print_list(suite, chosen_cases([suite]))
         return
+    cases = chosen_cases(names or [])
 
     from validation.case import Effort
     from validation.result import run_cases
@@ -58,12 +61,12 @@ def validate(
         raise typer.Exit(1)
 
 
-def _print_list(cases: "Sequence[Case]") -> None:
+def _print_list(title: str, cases: "Sequence[Case]") -> None:
     from rich import box
     from rich.console import Console
     from rich.table import Table
 
-    table = Table(box=box.SIMPLE_HEAD)
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
     table.add_column("case", no_wrap=True)
     table.add_column("proves")
     table.add_column("the control's mistake")

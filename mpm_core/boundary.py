@@ -29,11 +29,15 @@ SIDES = ("left", "right", "bottom", "top")
 
 @dataclass(frozen=True)
 class Wall:
-    """One side of the domain. A friction wall is unilateral: material may leave it; the others hold it."""
+    """One side of the domain. A friction wall is unilateral: material may leave it; the others hold it.
+
+    A wall may slide along itself at `velocity` [m/s], along x for bottom and top, along y for left and right.
+    """
 
     side: str
     kind: WallKind
     coefficient: float = 0.0
+    velocity: float = 0.0
 
     @property
     def axis(self) -> int:
@@ -60,13 +64,23 @@ def hold_at_wall(grid: Grid, wall: Wall, window: Window) -> float:
     count = last[other] - first[other] + 1
     sign = 1.0 if wall.is_lower else -1.0
     return float(
-        _hold(grid.nodes, start, grid.strides[other], count, wall.axis, sign, int(wall.kind), wall.coefficient)
+        _hold(
+            grid.nodes,
+            start,
+            grid.strides[other],
+            count,
+            wall.axis,
+            sign,
+            int(wall.kind),
+            wall.coefficient,
+            wall.velocity,
+        )
     )
 
 
 @njit(cache=True)
 @named(CORE_MARK)
-def _hold(nodes, start, along, count, axis, sign, kind, friction):  # type: ignore[no-untyped-def]
+def _hold(nodes, start, along, count, axis, sign, kind, friction, wall_velocity):  # type: ignore[no-untyped-def]
     taken = 0.0
     for k in range(count):
         node = start + k * along
@@ -78,12 +92,13 @@ def _hold(nodes, start, along, count, axis, sign, kind, friction):  # type: igno
         normal, tangential = free_normal, free_tangential
         approach = max(0.0, -sign * normal)
         if kind == WallKind.NO_SLIP:
-            normal, tangential = 0.0, 0.0
+            normal, tangential = 0.0, wall_velocity
         elif kind == WallKind.FREE_SLIP:
             normal = 0.0
         elif approach > 0.0:
             normal = 0.0
-            tangential = np.copysign(max(0.0, abs(tangential) - friction * approach), tangential)
+            sliding = tangential - wall_velocity
+            tangential = wall_velocity + np.copysign(max(0.0, abs(sliding) - friction * approach), sliding)
         nodes[node + NEW_VX + axis] = normal
         nodes[node + NEW_VY - axis] = tangential
         taken += 0.5 * mass * (free_normal - normal) * (old_normal + normal)

@@ -56,6 +56,9 @@ class WallSection(Section):
         description="free_slip and no_slip hold the material at the wall; friction lets it leave and slide"
     )
     coefficient: float = Field(default=0.0, ge=0, description="Coulomb friction coefficient of a friction wall [1]")
+    velocity: float = Field(
+        default=0.0, description="speed at which a friction or no_slip wall slides along itself, towards +x or +y [m/s]"
+    )
 
     @model_validator(mode="after")
     def _coefficient_belongs_to_friction(self) -> "WallSection":
@@ -63,6 +66,12 @@ class WallSection(Section):
             raise ValueError("kind = 'friction' needs a coefficient")
         if self.kind != "friction" and self.coefficient > 0:
             raise ValueError("a coefficient belongs to kind = 'friction', and to no other")
+        return self
+
+    @model_validator(mode="after")
+    def _velocity_belongs_to_a_wall_that_grips(self) -> "WallSection":
+        if self.velocity and self.kind not in ("friction", "no_slip"):
+            raise ValueError("a velocity belongs to kind = 'friction' or 'no_slip', which can pass it on")
         return self
 
 

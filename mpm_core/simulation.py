@@ -193,7 +193,7 @@ class Simulation:
 def _walls(scene: Scene) -> list[Wall]:
     sections = [(side, getattr(scene.boundary, side)) for side in SIDES]
     return [
-        Wall(side, WallKind[section.kind.upper()], section.coefficient)
+        Wall(side, WallKind[section.kind.upper()], section.coefficient, section.velocity)
         for side, section in sections
         if section.kind != "periodic"
     ]

@@ -17,9 +17,19 @@ POINT_CASES = (
     "mcc_one_dimensional_compression",
     "opening_and_closing",
 )
+SMALL_SCENES = (
+    "rigid_rotation",
+    "elastic_bar_vibration",
+    "axis_aligned_solution",
+    "sliding_block",
+    "slender_and_thin",
+    "leaving_the_domain",
+    "floor_friction_range",
+    "turned_scene",
+)
 
 
-@pytest.mark.parametrize("name", [*POINT_CASES, "rigid_rotation", "elastic_bar_vibration", "sliding_block"])
+@pytest.mark.parametrize("name", [*POINT_CASES, *SMALL_SCENES])
 def test_case_passes_and_its_control_fails(name):
     result = run_case(catalogue.get_case(name), Effort.QUICK)
     assert result.reasons == ()
@@ -51,7 +61,10 @@ def test_a_failing_case_is_exit_code_1(monkeypatch, capsys):
 
 def test_an_unknown_case_is_one_line_with_the_nearest_name(monkeypatch, capsys):
     assert call_command_line(monkeypatch, "validate", "simple_shaer") == 2
-    assert capsys.readouterr().err == "error: unknown validation case 'simple_shaer'; did you mean 'simple_shear'?\n"
+    assert (
+        capsys.readouterr().err
+        == "error: unknown validation case or suite 'simple_shaer'; did you mean 'simple_shear'?\n"
+    )
 
 
 def test_a_folder_that_cannot_be_made_is_refused_before_anything_runs(monkeypatch, tmp_path, capsys):
@@ -59,6 +72,13 @@ def test_a_folder_that_cannot_be_made_is_refused_before_anything_runs(monkeypatc
     file.write_text("")
     assert call_command_line(monkeypatch, "validate", "simple_shear", "--out", file) == 2
     assert "simple_shear ..." not in capsys.readouterr().err
+
+
+def test_a_suite_stands_for_its_cases_each_once():
+    chosen = [case.name for case in catalogue.chosen_cases(["simple_shear", "standard"])]
+    assert chosen[0] == "simple_shear"
+    assert sorted(chosen) == sorted(catalogue.SUITES["standard"])
+    assert chosen == [case.name for case in catalogue.chosen_cases([])]
 
 
 def test_list_names_every_case(monkeypatch, capsys):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, COLUMN, momentum, simulation
 
+from materials import InputError
 from mpm_core.columns import SXX, SYY, VX, VY, X, Y
 from mpm_core.scene import FEWEST_PERIODIC_CELLS
 
@@ -159,3 +160,47 @@ def test_a_column_between_smooth_walls_keeps_its_geostatic_stress(basis, toleran
     depth = 0.8 - body.points[Y]
     assert np.abs(body.points[VY]).max() < 1e-3
     np.testing.assert_allclose(body.points[SYY], -1500.0 * 9.8 * depth, atol=tolerance * largest)
+
+
+GRIPPING = ({"kind": "no_slip", "velocity": 0.2}, {"kind": "friction", "coefficient": 5.0, "velocity": 0.2})
+
+
+@pytest.mark.parametrize("wall", GRIPPING)
+def test_a_sliding_wall_drags_a_block_along(wall):
+    """At rest relative to the floor the block is at rest: what moves with it keeps its place on it."""
+    changes = {
+        "gravity": [0.0, -9.81],
+        "boundary": {"bottom": wall},
+        "body.0.shape.lower": [0.3, 0.0],
+        "body.0.shape.upper": [0.7, 0.4],
+        "body.0.velocity": [0.2, 0.0],
+        "body.0.initial_stress": {"kind": "geostatic"},
+    }
+    present = simulation(BLOCK, changes)
+    body = present.bodies[0]
+    start = body.points[X].mean()
+    for _ in range(100):
+        present.step(1e-3)
+    assert body.points[X].mean() - start == pytest.approx(0.02, rel=1e-3)
+
+
+def test_a_sliding_wall_takes_a_resting_block_along_by_friction():
+    """The impulse of friction is mu g t per mass, towards the wall's motion."""
+    changes = {
+        "gravity": [0.0, -9.81],
+        "boundary": {"bottom": {"kind": "friction", "coefficient": 0.2, "velocity": -5.0}},
+        "body.0.shape.lower": [0.3, 0.0],
+        "body.0.shape.upper": [0.7, 0.4],
+        "body.0.initial_stress": {"kind": "geostatic"},
+        "material.linear_elastic.bulk_modulus": 1e6,
+    }
+    present = simulation(BLOCK, changes)
+    body = present.bodies[0]
+    for _ in range(400):
+        present.step(2.5e-4)
+    assert body.points[VX].mean() == pytest.approx(-0.2 * 9.81 * 0.1, rel=0.05)
+
+
+def test_a_velocity_of_a_smooth_wall_is_refused():
+    with pytest.raises(InputError, match="a velocity belongs to kind = 'friction' or 'no_slip'"):
+        simulation(BLOCK, {"boundary": {"bottom": {"kind": "free_slip", "velocity": 1.0}}})

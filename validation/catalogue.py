@@ -31,6 +31,28 @@ SUITES: dict[str, tuple[str, ...]] = {
         "rest",
         "time_step_independence",
     ),
+    # What a user may do to it.
+    "hard": (
+        "overconsolidated_collapses",
+        "stiffness_range",
+        "regularisation_range",
+        "grain_size_range",
+        "points_per_cell",
+        "floor_friction_range",
+        "falling_block",
+        "thrown_cloud",
+        "slender_and_thin",
+        "leaving_the_domain",
+        "step_limit",
+    ),
+    # Collapses against finer grids, other frames and experiments.
+    "collapses": (
+        "grid_convergence",
+        "runout_scaling",
+        "aluminium_bars",
+        "moving_frame",
+        "turned_scene",
+    ),
 }
 NAMES = tuple(name for suite in SUITES.values() for name in suite)
 

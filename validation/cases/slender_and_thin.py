@@ -1,0 +1,82 @@
+"""A column twenty times as high as wide, and a layer one cell thick."""
+
+from typing import Any
+
+from materials.registry import get_material
+from mpm_core.columns import Y
+from mpm_core.simulation import Simulation
+from validation.case import Case, Effort, Evidence, Measurement, upper_bound
+from validation.scenes import advance, simulation_of
+from validation.survival import NORM, RECKLESSNESS, SURVIVAL, notes, reckless_trial, survival, survivals, trial
+
+SETTLEMENT_BAND = 1e-2
+END = {Effort.QUICK: 0.5, Effort.FULL: 1.5}
+CELL = {Effort.QUICK: 0.025, Effort.FULL: 0.0125}
+WIDTH, ASPECT, LENGTH = 0.05, 20.0, 0.5
+MATERIALS = {"mu(I)-LC": ("mu_i_lc", "paper"), "MCC OCR 1": ("modified_cam_clay", "paper")}
+
+
+def scene(material: str, cell_size: float, size: tuple[float, float], half_domain: float) -> dict[str, Any]:
+    """A rectangle of width and height on a rough floor, in the middle of the domain."""
+    law, parameter_set = MATERIALS[material]
+    left = half_domain - 0.5 * size[0]
+    return {
+        "gravity": [0.0, -9.81],
+        "grid": {"cell_size": cell_size, "upper": [2.0 * half_domain, 1.1]},
+        "boundary": {"bottom": {"kind": "friction", "coefficient": 0.7}},
+        "time": {"end": 1.5},
+        "material": {law: get_material(law).parameter_sets[parameter_set].parameters._asdict()},
+        "body": [
+            {
+                "material": law,
+                "shape": {"kind": "rectangle", "lower": [left, 0.0], "upper": [left + size[0], size[1]]},
+                "density": 1500.0,
+                "initial_stress": {"kind": "geostatic"},
+            }
+        ],
+    }
+
+
+def slender(material: str, effort: Effort) -> Simulation:
+    """The column, two cells wide on the coarse grid."""
+    return simulation_of(scene(material, CELL[effort], (WIDTH, ASPECT * WIDTH), half_domain=2.5))
+
+
+def thin(material: str, effort: Effort) -> Simulation:
+    """The layer."""
+    return simulation_of(scene(material, CELL[effort], (LENGTH, CELL[effort]), half_domain=0.5))
+
+
+def settlement(material: str, effort: Effort) -> Measurement:
+    """How far the centre of mass of the layer sinks, over the thickness: it has nowhere to go but its ends."""
+    simulation = thin(material, effort)
+    body = simulation.bodies[0]
+    start = float(body.points[Y].mean())
+    advance(simulation, END[effort])
+    sunk = (start - float(body.points[Y].mean())) / CELL[effort]
+    return upper_bound(f"thin layer, {material}: settlement over thickness", "1", sunk, SETTLEMENT_BAND)
+
+
+def measure(effort: Effort) -> Evidence:
+    """Both shapes, both materials."""
+    trials = {f"slender column, {name}": trial(slender(name, effort), END[effort]) for name in MATERIALS}
+    trials |= {f"thin layer, {name}": trial(thin(name, effort), END[effort]) for name in MATERIALS}
+    rest = tuple(settlement(name, effort) for name in MATERIALS)
+    return Evidence((*survivals(trials), *rest), notes=notes(trials))
+
+
+def control(effort: Effort) -> tuple[Measurement, ...]:
+    """Steps far above the stable one, past the refusal."""
+    return survival("reckless", reckless_trial(slender("mu(I)-LC", Effort.QUICK), END[Effort.QUICK]))
+
+
+CASE = Case(
+    name="slender_and_thin",
+    title="column of aspect ratio 20, layer one cell thick",
+    proves="bodies at the limit of the resolution neither break the run nor sink into the floor",
+    reference=f"{SURVIVAL}; a flat layer on a rough floor stays",
+    norm=f"{NORM}; settlement over thickness",
+    mistake=RECKLESSNESS,
+    measure=measure,
+    control=control,
+)

@@ -1,0 +1,65 @@
+"""Steps exactly at the stability limit, and five per cent above it."""
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from materials import InputError
+from mpm_core.run import run
+from mpm_core.scene import Scene
+from mpm_core.simulation import Simulation
+from validation.case import Case, Effort, Evidence, Measurement, upper_bound
+from validation.collapses import CELL_SIZE, SCENES, collapse
+from validation.scenes import shipped_simulation
+from validation.survival import NORM, SURVIVAL, notes, reckless_trial, survival, survivals, trial
+
+END = {Effort.QUICK: 0.5, Effort.FULL: 1.5}
+DISCS_END = 3.6
+AT_LIMIT: dict[str, Any] = {"time.safety": 1.0}
+ABOVE = 1.05
+
+
+def column(material: str, effort: Effort) -> Simulation:
+    """The paper's column with the whole stable step."""
+    return collapse(material, CELL_SIZE[effort], AT_LIMIT)
+
+
+def refused(above: float) -> Measurement:
+    """A step set by hand; 0 if the run refuses it."""
+    simulation = shipped_simulation("two_discs")
+    step = above * simulation.stable_step()
+    content = simulation.scene.model_dump(mode="json", exclude_none=True)
+    content["time"] |= {"step": step, "end": 10.0 * step}
+    content["output"] |= {"vtu": False, "pictures": False}
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            run(Scene.from_dict(content), Path(folder) / "run")
+        except InputError as error:
+            accepted = float("above the stable step" not in str(error))
+        else:
+            accepted = 1.0
+    return upper_bound(f"step of {above:g} times the limit is accepted", "1", accepted, 0.0)
+
+
+def measure(effort: Effort) -> Evidence:
+    """Collapses and the collision of discs at the limit; a step above it."""
+    trials = {material: trial(column(material, effort), END[effort]) for material in SCENES}
+    trials["two elastic discs"] = trial(shipped_simulation("two_discs", AT_LIMIT), DISCS_END)
+    return Evidence((*survivals(trials), refused(ABOVE)), notes=notes(trials))
+
+
+def control(effort: Effort) -> tuple[Measurement, ...]:
+    """A step that must not be refused, and steps far above the limit, which must break."""
+    return survival("reckless", reckless_trial(column("mu(I)-LC", Effort.QUICK), END[Effort.QUICK]))
+
+
+CASE = Case(
+    name="step_limit",
+    title="step at the stability limit, and 5 % above",
+    proves="the limit is one: at it runs hold, above it they are refused",
+    reference=f"{SURVIVAL}, at safety 1; a step 5 % above the stable one is refused",
+    norm=NORM,
+    mistake="steps ten times the stable one, past the refusal",
+    measure=measure,
+    control=control,
+)

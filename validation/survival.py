@@ -1,0 +1,149 @@
+"""What a hard case must survive, and what was limited on the way.
+
+The core clips nothing: a run that goes wrong stops. What it bounds is counted here, at the end of a run:
+
+- points without stress, which are free to open and close (`numerics`: points without contact),
+- points nearer to a wall than a twentieth of a cell, whose stiffness is bounded (`mpm_core.basis`),
+- points of Modified Cam Clay whose yield surface has shrunk to its smallest size.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from materials import SimulationError
+from mpm_core.basis import SMALLEST_MOMENT_AT_WALL
+from mpm_core.body import Body
+from mpm_core.columns import SXX, SYY, X, Y
+from mpm_core.observables import PileShape, pile_shape
+from mpm_core.simulation import Simulation
+from validation.case import Measurement, upper_bound
+from validation.scenes import advance
+
+SURVIVAL = "the run reaches its end with finite values and creates no energy"
+NORM = "share of the time not reached; points not finite; energy created over energy released"
+RECKLESSNESS = "steps ten times the stable one, past the refusal"
+
+ENERGY_BAND = 1e-2
+INTERVALS = 20
+# Past the stable step, where a run has to break.
+RECKLESS = 10.0
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One run of a hard case.
+
+    missing         share of the time that was not reached
+    not_finite      points with a value that is not finite
+    created         largest energy that came from nowhere, over the energy released
+    shape           the material at the end
+    steps           number of steps
+    limited         counts of what was bounded, by name
+    message         why the run stopped; empty if it did not
+    """
+
+    missing: float
+    not_finite: int
+    created: float
+    shape: PileShape
+    steps: int
+    limited: dict[str, int]
+    message: str
+
+
+def trial(simulation: Simulation, end: float) -> Trial:
+    """Run a simulation to `end` [s]; a run that stops is a result too."""
+    created = [0.0]
+    message = ""
+    try:
+        advance(simulation, end, lambda present: created.append(created_energy(present)), INTERVALS)
+    except SimulationError as error:
+        message = str(error)
+    return _result(simulation, end, max(created), message)
+
+
+def reckless_trial(simulation: Simulation, end: float) -> Trial:
+    """The negative control: steps ten times the stable one, which a run would refuse."""
+    message = ""
+    created = [0.0]
+    try:
+        while simulation.time < end:
+            simulation.step(RECKLESS * simulation.stable_step())
+            created.append(created_energy(simulation))
+    except SimulationError as error:
+        message = str(error)
+    return _result(simulation, end, max(created), message)
+
+
+def created_energy(simulation: Simulation) -> float:
+    """Negative numerical dissipation over the energy released so far; zero where energy was lost."""
+    ledger = simulation.ledger
+    released = ledger.initial_kinetic + max(0.0, -ledger.potential)
+    return max(0.0, -ledger.numerical_dissipation) / released if released > 0.0 else 0.0
+
+
+def _result(simulation: Simulation, end: float, created: float, message: str) -> Trial:
+    return Trial(
+        missing=max(0.0, 1.0 - simulation.time / end),
+        not_finite=sum(int((~np.isfinite(body.points)).any(axis=0).sum()) for body in simulation.bodies),
+        created=created,
+        shape=pile_shape(simulation.bodies, simulation.grid.lower[1], simulation.grid.cell_size),
+        steps=simulation.steps,
+        limited=limited(simulation),
+        message=message,
+    )
+
+
+def limited(simulation: Simulation) -> dict[str, int]:
+    """Counts of points for which something is bounded now."""
+    counts = {
+        "without stress": sum(
+            int(((body.points[SXX] == 0.0) & (body.points[SYY] == 0.0)).sum()) for body in simulation.bodies
+        ),
+        "at a wall": sum(_at_walls(simulation, body) for body in simulation.bodies),
+    }
+    smallest = [
+        int((body.state("preconsolidation_pressure") <= 2.0 * body.parameters.stress_free_pressure).sum())
+        for body in simulation.bodies
+        if "preconsolidation_pressure" in body.law.state._fields
+    ]
+    return {**counts, "at the smallest yield surface": sum(smallest)} if smallest else counts
+
+
+def _at_walls(simulation: Simulation, body: Body) -> int:
+    near = np.zeros(body.count, np.bool_)
+    for axis, row in ((0, X), (1, Y)):
+        if axis not in simulation.periodic_axes:
+            distance = np.minimum(
+                body.points[row] - simulation.grid.lower[axis], simulation.grid.upper[axis] - body.points[row]
+            )
+            near |= distance < SMALLEST_MOMENT_AT_WALL * simulation.grid.cell_size
+    return int(near.sum())
+
+
+def survival(label: str, found: Trial) -> tuple[Measurement, ...]:
+    """The end is reached, all is finite, no energy comes from nowhere."""
+    return (
+        upper_bound(f"{label}: time not reached", "1", found.missing, 0.0),
+        upper_bound(f"{label}: points that are not finite", "1", found.not_finite, 0.0),
+        upper_bound(f"{label}: energy created over released", "1", found.created, ENERGY_BAND),
+    )
+
+
+def survivals(trials: Mapping[str, Trial]) -> tuple[Measurement, ...]:
+    """Of several runs by label."""
+    return tuple(measurement for label, found in trials.items() for measurement in survival(label, found))
+
+
+def notes(trials: Mapping[str, Trial]) -> tuple[str, ...]:
+    """One line for each run: shape, steps, what was limited, why it stopped."""
+    return tuple(_note(label, found) for label, found in trials.items())
+
+
+def _note(label: str, found: Trial) -> str:
+    counts = ", ".join(f"{count} {name}" for name, count in found.limited.items())
+    shape = f"half width {found.shape.runout:.3f} m, top {found.shape.height:.3f} m"
+    stopped = f"; stopped: {found.message}" if found.message else ""
+    return f"{label}: {shape}, {found.steps} steps; points {counts}{stopped}"
