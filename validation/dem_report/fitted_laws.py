@@ -13,7 +13,8 @@ import numpy as np
 from materials import InputError
 from mpm_core.output import atomic
 from validation.calibration.findings import Estimate, Findings
-from validation.calibration.fit import calibrate
+from validation.calibration.fit import Fit, calibrate
+from validation.calibration.model import answer
 from validation.dem_report.reference_set import ReferenceSet, Rows
 
 SHEAR_FILE, SLOW_SHEAR_FILE, COMPRESSION_FILE = "shear.csv", "slow_shear.csv", "compression.csv"
@@ -23,6 +24,7 @@ SLOW = 0.03
 LARGEST_PRESSURE = 10e3
 # Standard error of the pressures of compression, which come without one [1].
 PRESSURE_ERROR = 0.05
+CURVE_POINTS = 12
 
 
 @dataclass(frozen=True)
@@ -42,13 +44,17 @@ class JudgedLaw:
 
 @dataclass(frozen=True)
 class FittedLaw:
-    """A law with all its parameters, what the fit says, and the command that repeats it."""
+    """A law with all its parameters, what the fit says, and the command that repeats it.
+
+    curve   friction of the fitted law over the engineering inertial number
+    """
 
     judged: JudgedLaw
     parameters: dict[str, float]
     estimates: tuple[Estimate, ...]
     remarks: tuple[str, ...]
     command: str
+    curve: tuple[tuple[float, ...], tuple[float, ...]]
 
 
 def write_data(reference: ReferenceSet, folder: Path, grain_density: float, grain_diameter: float) -> None:
@@ -69,7 +75,15 @@ def fitted(judged: JudgedLaw, folder: Path) -> FittedLaw:
     findings = Findings(calibrate(judged.law, paths, fixed=judged.given))
     fixed = "".join(f" --fix {name}={value:g}" for name, value in judged.given.items())
     command = f"grainlaw calibrate {judged.law} {' '.join(path.name for path in paths)}{fixed}"
-    return FittedLaw(judged, findings.fit.values, findings.estimates, findings.remarks, command)
+    return FittedLaw(judged, findings.fit.values, findings.estimates, findings.remarks, command, _curve(findings.fit))
+
+
+def _curve(fit: Fit) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """The friction that the law has in steady shear, over the range of the data."""
+    shear = next(data for data in fit.model.data if data.experiment.name == "steady-shear")
+    numbers = np.geomspace(shear.abscissa.min(), shear.abscissa.max(), CURVE_POINTS)
+    friction = answer(fit.model.history(shear, fit.values, numbers), shear.measured[0])
+    return tuple(numbers.tolist()), tuple(friction.tolist())
 
 
 def _shear_table(rows: Rows, grain_density: float, grain_diameter: float) -> str:

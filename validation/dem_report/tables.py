@@ -43,14 +43,14 @@ def verdict_table(ensemble: Ensemble, judgements: Sequence[Judgement]) -> Table:
         f"Indistinguishable: {bands}; acceptable: twice that."
     )
     title = f"Column a = {ensemble.aspect_ratio:g}, {ensemble.floor} floor"
-    columns = ("law", "verdict", *SYMBOLS, "largest E_A(t)", "decided by")
+    columns = ("law", "verdict", "deposit alone", *SYMBOLS, "largest E_A(t)", "decided by")
     return Table(title, note, columns, tuple(_verdict_row(found) for found in judgements))
 
 
 def _verdict_row(judged: Judgement) -> tuple[str, ...]:
     found = judged.comparison
     if found is None:
-        return (judged.name, judged.verdict, *[""] * (len(SYMBOLS) + 1), judged.failure)
+        return (judged.name, judged.verdict, *[""] * (len(SYMBOLS) + 2), judged.failure)
     nearest, farthest = found.nearest[-1], found.farthest[-1]
     area = f"{percent(found.distances[0].distance)} ({percent(nearest)} to {percent(farthest)})"
     others = [_relative(one) for one in found.distances[1:]]
@@ -58,6 +58,7 @@ def _verdict_row(judged: Judgement) -> tuple[str, ...]:
     return (
         judged.name,
         judged.verdict,
+        found.deposit,
         area,
         *others,
         f"{percent(found.profiles.max())} at {at:.2f} s",
@@ -71,12 +72,19 @@ def summary_table(report: Report) -> Table:
     for law in report.laws:
         judged = [found for found in report.judgements if found.name == law.judged.title]
         counted = sum(found.verdict is Verdict.INDISTINGUISHABLE for found in judged)
+        deposits = [found.comparison.deposit for found in judged if found.comparison is not None]
+        piles = sum(found is Verdict.INDISTINGUISHABLE for found in deposits)
         rows.append(
-            (law.judged.title, *(found.verdict for found in judged), f"{counted} of {len(judged)}", law.judged.limits)
+            (
+                law.judged.title,
+                *(found.verdict for found in judged),
+                f"{counted} of {len(judged)} ({piles})",
+                law.judged.limits,
+            )
         )
     rows += [(title, *[""] * (len(report.columns) + 1), reason) for title, reason in report.unfitted.items()]
     columns = ("law", *(f"a = {ensemble.aspect_ratio:g}" for ensemble in report.columns), "indistinguishable", "limits")
-    note = "Each verdict is that of the worst of E_A, w, H and t50 at rest."
+    note = "Each verdict is that of the worst of E_A, w, H and t50; in brackets the count for the deposit alone, without t50."
     return Table("Verdicts", note, columns, tuple(rows))
 
 
@@ -105,7 +113,7 @@ def variant_table(title: str, note: str, judgements: Sequence[Judgement]) -> Tab
         (row[0], found.variant.says if found.variant else "", *row[1:])
         for found, row in ((found, _verdict_row(found)) for found in judgements)
     ]
-    columns = ("changed", "what it shows", "verdict", *SYMBOLS, "largest E_A(t)", "decided by")
+    columns = ("changed", "what it shows", "verdict", "deposit alone", *SYMBOLS, "largest E_A(t)", "decided by")
     return Table(title, note, columns, tuple(rows))
 
 

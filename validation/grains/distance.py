@@ -78,10 +78,11 @@ def _last(name: str) -> Callable[[Observation], float]:
 
 
 PROFILE_BAND = 0.06
+HALF_TIME = "t50"
 MEASURES = (
     Measure("runout", "w", "m", 0.06, _last("runout")),
     Measure("height", "H", "m", 0.05, _last("height")),
-    Measure("half time", "t50", "s", 0.05, half_time),
+    Measure("half time", HALF_TIME, "s", 0.05, half_time),
     Measure("interior solid fraction", "phi", "1", None, _last("interior_solid_fraction")),
     Measure("centre of mass", "z_cm", "m", None, _last("center_of_mass_height")),
 )
@@ -124,6 +125,12 @@ class Comparison:
     def verdict(self) -> Verdict:
         """The least favourable of the judged distances."""
         return worst([found.verdict for found in self.distances if found.verdict is not None])
+
+    @property
+    def deposit(self) -> Verdict:
+        """The same for the pile at rest alone, whenever it came to be."""
+        verdicts = [found.verdict for found in self.distances if found.symbol != HALF_TIME]
+        return worst([found for found in verdicts if found is not None])
 
     @property
     def decisive(self) -> Distance:
