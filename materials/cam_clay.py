@@ -43,12 +43,13 @@ class CamClay(NamedTuple):
 
 
 class CamClayStep(NamedTuple):
-    """The end of a step: p [Pa], p_c [Pa], s [Pa], and the plastic shear strain sqrt(1/2 e^p:e^p) of the step [1]."""
+    """The end of a step: p, p_c, s [Pa], and its plastic strain, sqrt(1/2 e^p:e^p) and eps_v^p [1]."""
 
     mean_pressure: float
     preconsolidation_pressure: float
     deviator: SymmetricTensor
     plastic_shear: float
+    plastic_compression: float
 
 
 class Trial(NamedTuple):
@@ -104,10 +105,12 @@ def cam_clay_step(
     shear: SymmetricTensor,
     preconsolidation_pressure: float,
     constants: CamClay,
+    expected: float,
 ) -> CamClayStep:
     """One strain increment in contact (volumetric, compression-positive, and deviatoric), elastic or returned to F = 0.
 
-    The result is NaN if the iteration does not converge.
+    `expected` is the plastic volume strain to try first, 0 if nothing is known of it. The result is NaN if the
+    iteration does not converge.
     """
     growth = compression / constants.swelling_index
     shrunk = exponential(-growth)
@@ -116,12 +119,13 @@ def cam_clay_step(
     s = added(start_deviator, scaled(shear, 2.0 * modulus))
     m = constants.critical_state_ratio
     if 1.5 * contraction(s, s) / (m * m) <= p * (preconsolidation_pressure - p):
-        return CamClayStep(p, preconsolidation_pressure, s, 0.0)
+        return CamClayStep(p, preconsolidation_pressure, s, 0.0, 0.0)
     trial = elastic_trial(start_pressure, start_deviator, compression, shear, preconsolidation_pressure, constants)
-    new = return_to_yield_surface(trial, constants)
+    new = return_to_yield_surface(trial, constants, expected)
     s = scaled(added(start_deviator, scaled(shear, 2.0 * new.modulus)), 1.0 / (1.0 + new.relaxation))
     plastic_shear = 0.5 * half_norm(s) * new.relaxation / new.modulus
-    return CamClayStep(new.mean_pressure, new.preconsolidation_pressure, s, plastic_shear)
+    plastic_compression = compression - constants.swelling_index * log_ratio(new.mean_pressure, start_pressure)
+    return CamClayStep(new.mean_pressure, new.preconsolidation_pressure, s, plastic_shear, plastic_compression)
 
 
 @pointwise
@@ -143,9 +147,13 @@ def elastic_trial(
 
 
 @pointwise
-def return_to_yield_surface(trial: Trial, constants: CamClay) -> YieldState:
+def return_to_yield_surface(trial: Trial, constants: CamClay, expected: float) -> YieldState:
     """The state with F = 0 at the end of the step; NaN if the iteration does not converge."""
     bracket = first_bracket(trial.wetness)
+    total_slope = 1.0 / constants.swelling_index + 1.0 / (constants.compression_index - constants.swelling_index)
+    theta = 1.0 - expected * total_slope / trial.wetness if trial.wetness != 0.0 else 1.0
+    if 0.0 < theta < bracket.above:
+        bracket = Bracket(theta, bracket.below, bracket.above)
     for _ in range(MAXIMUM_ITERATIONS):
         new = yield_state(bracket.theta, trial, constants)
         if is_on_yield_surface(new):

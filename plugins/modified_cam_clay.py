@@ -101,6 +101,7 @@ def update(
         contact.shear,
         state.preconsolidation_pressure,
         constants_of(parameters),
+        0.0,
     )
     smallest = parameters.stress_free_pressure
     preconsolidation_pressure = max(new.preconsolidation_pressure, 2.0 * smallest)

@@ -151,7 +151,7 @@ LAW = Law(
                 bulk_modulus=1e6,
                 poisson_ratio=0.3,
             ),
-            "friction, I_0 and densities of glass beads in Dunatunga & Kamrin (2015); K, nu are a choice, K far above p",
+            "friction, I_0 and densities of glass beads in Dunatunga & Kamrin (2015); K and nu are choices",
             density_above_critical,
         ),
         "paper": ParameterSet(PAPER, "constants of `mu_i_lc`, Table 1 of its source", density_above_critical),

@@ -66,7 +66,7 @@ from materials import (
 
 # The last move of the yield surface, relative; the secant method leaves its square.
 TOLERANCE = 1e-8
-MAXIMUM_ITERATIONS = 200
+MAXIMUM_ITERATIONS = 60
 # Of the inertial number found against the one assumed, relative; more means that the return jumps.
 LARGEST_MISMATCH = 1e-6
 # Strain below which a return does not jump.
@@ -184,7 +184,7 @@ def flow_in_parts(increment: Increment, guess: float, parameters: Parameters) ->
 @pointwise
 def led_through(increment: Increment, parts: int, guess: float, parameters: Parameters) -> tuple[Flow, bool]:
     """The last of equal parts of a step, and whether each had the inertial number of its own plastic strain."""
-    start = CamClayStep(increment.start_pressure, increment.size_at_rest, increment.start_deviator, 0.0)
+    start = CamClayStep(increment.start_pressure, increment.size_at_rest, increment.start_deviator, 0.0, 0.0)
     flow, is_consistent = Flow(start, 0.0, guess), True
     compression, shear, dt = increment.compression / parts, scaled(increment.shear, 1.0 / parts), increment.dt / parts
     for _ in range(parts):
@@ -197,9 +197,9 @@ def led_through(increment: Increment, parts: int, guess: float, parameters: Para
 
 @pointwise
 def consistent_flow(increment: Increment, guess: float, parameters: Parameters) -> Flow:
-    """The step whose plastic strain has the inertial number of its yield surface; NaN if the search does not end."""
+    """The step whose plastic strain has the inertial number of its yield surface."""
     tolerance = TOLERANCE * sensitive_inertial_number(parameters)
-    flow = flow_at(guess, increment, parameters)
+    flow = flow_at(guess, increment, parameters, 0.0)
     slope = slope_of_found(flow, increment, parameters)
     lower, upper = -1.0, math.inf
     for _ in range(MAXIMUM_ITERATIONS):
@@ -214,21 +214,25 @@ def consistent_flow(increment: Increment, guess: float, parameters: Parameters) 
         if flow.found == 0.0:
             # On an elastic step the slope says nothing; the point may not flow at all.
             trial = 0.0 if lower < 0.0 else 0.5 * (lower + upper)
+        elif abs(trial - flow.assumed) <= 1e-4 * tolerance:
+            return flow
         elif not lower < trial < upper:
-            trial = 0.5 * (max(lower, 0.0) + upper)
-        new = flow_at(trial, increment, parameters)
+            trial = 0.5 * (max(lower, 0.0) + upper) if upper < math.inf else flow.found
+        new = flow_at(trial, increment, parameters, flow.end.plastic_compression)
         if abs(trial - flow.assumed) <= tolerance:
             return new
-        stalled = abs(new.found - new.assumed) > 0.5 * abs(excess) and upper < math.inf
+        new_excess = abs(new.found - new.assumed)
+        # Close to the root round-off stalls the search as well, but there the secant method ends it.
+        stalled = new_excess > 0.5 * abs(excess) and upper < math.inf and new_excess > 0.01 * (new.found + new.assumed)
         # Without a slope the next trial leaves the bracket, which is then halved.
         slope = -math.inf if stalled else min(0.0, (new.found - flow.found) / (new.assumed - flow.assumed))
         flow = new
-    return flow_at(math.nan, increment, parameters)
+    return flow
 
 
 @pointwise
-def flow_at(assumed: float, increment: Increment, parameters: Parameters) -> Flow:
-    """The Cam Clay step with the surface that belongs to an inertial number."""
+def flow_at(assumed: float, increment: Increment, parameters: Parameters, expected: float) -> Flow:
+    """The Cam Clay step with the surface of an inertial number; `expected` as in `cam_clay_step`."""
     end = cam_clay_step(
         increment.start_pressure,
         increment.start_deviator,
@@ -241,6 +245,7 @@ def flow_at(assumed: float, increment: Increment, parameters: Parameters) -> Flo
             parameters.swelling_index,
             parameters.poisson_ratio,
         ),
+        expected,
     )
     rate = end.plastic_shear / increment.dt
     found = inertial_number(rate, end.mean_pressure, parameters.grain_diameter, parameters.grain_density)

@@ -16,7 +16,7 @@ from validation.random_increments import norm, random_cases
 
 BAND = 1e-8
 # Below this strain no increment is taken in parts, and I is that of the whole increment.
-WHOLE_STRAIN = 0.01
+WHOLE_STRAIN = 0.003
 COUNT = {Effort.QUICK: 100_000, Effort.FULL: 1_000_000}
 LAW = get_material("mu_i_mcc")
 PARAMETERS = LAW.parameter_sets["paper"].parameters

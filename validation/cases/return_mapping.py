@@ -51,7 +51,7 @@ def compiled() -> tuple[Callable[..., Any], Callable[..., Any]]:
                 cases[13, k] / substeps,
             )
             for _ in range(substeps):
-                p, p_c, s, _plastic_shear = step(p, s, compression, shear, p_c, constants)
+                p, p_c, s, _plastic_shear, _plastic_compression = step(p, s, compression, shear, p_c, constants, 0.0)
             results[0, k], results[1, k] = p, p_c
             results[2, k], results[3, k], results[4, k] = s.xx, s.yy, s.zz
             results[5, k], results[6, k], results[7, k] = s.xy, s.yz, s.xz
