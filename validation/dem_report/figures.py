@@ -28,8 +28,9 @@ def profile_figure(ensemble: Ensemble, judgements: Sequence[Judgement]) -> str:
     """Surfaces at shares of the runout of the grains and at rest."""
     times = _times(ensemble)
     x = max((run.x for run in ensemble.runs), key=len)
-    figure = Figure(figsize=(WIDTH, 5.4), layout="constrained")
-    all_axes = figure.subplots(3, 2, sharex=True, sharey=True)
+    rows, columns = (3, 2) if len(times) > 1 else (1, 1)
+    figure = Figure(figsize=(WIDTH, 0.8 + 1.55 * rows + 1.0 / rows), layout="constrained")
+    all_axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes, time in zip(all_axes.flat, times, strict=True):
         surfaces = np.array([surface_at(run, time, x) for run in ensemble.runs])
         axes.fill_between(x, surfaces.min(axis=0), surfaces.max(axis=0), color=BAND, lw=0, label="grains, all runs")
@@ -113,6 +114,8 @@ def _times(ensemble: Ensemble) -> list[float]:
     """When the mean runout of the grains has grown by given shares, and the end [s]."""
     times = ensemble.runs[0].times
     times = times[times <= ensemble.end]
+    if len(times) < 2:
+        return [ensemble.end]
     runout = np.mean([np.interp(times, run.times, run.of("runout")) for run in ensemble.runs], axis=0)
     growth = np.maximum.accumulate((runout - runout[0]) / (runout[-1] - runout[0]))
     return [float(np.interp(share, growth, times)) for share in SHARES_OF_RUNOUT] + [ensemble.end]
