@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from validation.dem_report.fitted_laws import friction_of_mean_pressure
 from validation.dem_report.judgement import Judgement
 from validation.dem_report.reference_set import Ensemble, Rows
 from validation.grains.distance import surface_at
@@ -28,8 +29,9 @@ def profile_figure(ensemble: Ensemble, judgements: Sequence[Judgement]) -> str:
     """Surfaces at shares of the runout of the grains and at rest."""
     times = _times(ensemble)
     x = max((run.x for run in ensemble.runs), key=len)
-    figure = Figure(figsize=(WIDTH, 5.4), layout="constrained")
-    all_axes = figure.subplots(3, 2, sharex=True, sharey=True)
+    rows, columns = (3, 2) if len(times) > 1 else (1, 1)
+    figure = Figure(figsize=(WIDTH, 0.8 + 1.55 * rows + 1.0 / rows), layout="constrained")
+    all_axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes, time in zip(all_axes.flat, times, strict=True):
         surfaces = np.array([surface_at(run, time, x) for run in ensemble.runs])
         axes.fill_between(x, surfaces.min(axis=0), surfaces.max(axis=0), color=BAND, lw=0, label="grains, all runs")
@@ -93,13 +95,13 @@ def shear_figure(shear: Rows, curves: dict[str, tuple[Sequence[float], Sequence[
     """Friction and solid fraction of the grains over the inertial number, with the friction of the fitted laws."""
     figure = Figure(figsize=(WIDTH, 3.0), layout="constrained")
     friction, fraction = figure.subplots(1, 2)
-    numbers = [row["I"] for row in shear]
-    errors = [row["se_mu"] for row in shear]
-    friction.errorbar(numbers, [row["tau_over_p3"] for row in shear], errors, fmt="o", ms=3, color=MEAN, label="grains")
+    numbers = [row["inertial_number"] for row in shear]
+    ratios, errors = zip(*(friction_of_mean_pressure(row) for row in shear), strict=True)
+    friction.errorbar(numbers, ratios, errors, fmt="o", ms=3, color=MEAN, label="grains")
     friction.plot(numbers, [row["mu"] for row in shear], "x", ms=4, color="#999999", label="over the normal stress")
     for number, (name, (x, y)) in enumerate(curves.items()):
         friction.plot(x, y, color=COLORS[number % len(COLORS)], lw=1.1, label=name)
-    fraction.plot(numbers, [row["phi"] for row in shear], "o", ms=3, color=MEAN)
+    fraction.plot(numbers, [row["solid_fraction"] for row in shear], "o", ms=3, color=MEAN)
     for axes, label in ((friction, r"$\tau/p$"), (fraction, r"$\phi$")):
         axes.set_xscale("log")
         axes.set_xlabel("I, engineering rate", fontsize=9)
@@ -113,6 +115,8 @@ def _times(ensemble: Ensemble) -> list[float]:
     """When the mean runout of the grains has grown by given shares, and the end [s]."""
     times = ensemble.runs[0].times
     times = times[times <= ensemble.end]
+    if len(times) < 2:
+        return [ensemble.end]
     runout = np.mean([np.interp(times, run.times, run.of("runout")) for run in ensemble.runs], axis=0)
     growth = np.maximum.accumulate((runout - runout[0]) / (runout[-1] - runout[0]))
     return [float(np.interp(share, growth, times)) for share in SHARES_OF_RUNOUT] + [ensemble.end]

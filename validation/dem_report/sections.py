@@ -1,8 +1,10 @@
 """What the page says, in its order: the scatter of the grains first, then what was fitted, judged and left out."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from validation.dem_report.figures import distance_figure, profile_figure, series_figure, shear_figure
+from validation.dem_report.judgement import Judgement
 from validation.dem_report.reference_set import Ensemble, Rows
 from validation.dem_report.report import Report
 from validation.dem_report.tables import (
@@ -21,8 +23,8 @@ MODELLED = (
     "Gaussian whose standard deviation is one mean grain diameter over cells of 7.5 mm, mirrored at the floor. Surface "
     "h(x): the highest level where the solid fraction falls through half of that of the packing before the release. "
     "Runout w: half of the width over which h exceeds one grain diameter. H: the largest h. t50: when half of the "
-    "growth of the runout is reached. E_A: area between two surfaces over the mean area below them. phi: mean solid fraction "
-    "two diameters below the surface and one above the floor."
+    "growth of the runout is reached. E_A: area between two surfaces over the mean area below them. phi: mean solid "
+    "fraction two diameters below the surface and one above the floor."
 )
 CONTINUUM = (
     "The continuum starts with the mass and the mean surface of the packing at rest under its own weight, with equal "
@@ -98,16 +100,17 @@ def _fits(report: Report, shear: Rows) -> Section:
 def _column(report: Report, ensemble: Ensemble) -> Section:
     judgements = report.of_column(ensemble)
     table = verdict_table(ensemble, judgements)
-    name = f"a = {ensemble.aspect_ratio:g}"
-    return Section(
-        table.title,
-        tables=(table,),
-        figures=(
-            ReportFigure(profile_figure(ensemble, judgements), f"Surfaces over time, {name}."),
-            ReportFigure(series_figure(ensemble, judgements), f"Runout, height, energy, solid fraction, {name}."),
-            ReportFigure(
-                distance_figure(judgements, PROFILE_BAND),
-                f"E_A over time, {name}; green: indistinguishable, yellow: acceptable; shaded: nearest and farthest run.",
-            ),
+    return Section(table.title, tables=(table,), figures=column_figures(ensemble, judgements))
+
+
+def column_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple[ReportFigure, ...]:
+    """Surfaces, series and E_A over time on one column."""
+    name = ensemble.case
+    return (
+        ReportFigure(profile_figure(ensemble, judgements), f"Surfaces over time, {name}."),
+        ReportFigure(series_figure(ensemble, judgements), f"Runout, height, energy, solid fraction, {name}."),
+        ReportFigure(
+            distance_figure(judgements, PROFILE_BAND),
+            f"E_A over time, {name}; green: indistinguishable, yellow: acceptable; shaded: nearest to farthest.",
         ),
     )

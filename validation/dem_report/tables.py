@@ -35,14 +35,19 @@ def scatter_table(found: Sequence[Scatter]) -> Table:
 
 
 def verdict_table(ensemble: Ensemble, judgements: Sequence[Judgement]) -> Table:
-    """Laws on one column."""
+    """Laws on one column of the reference set."""
+    title = f"Column a = {ensemble.aspect_ratio:g}, {ensemble.floor} floor"
+    return comparison_table(ensemble, judgements, title)
+
+
+def comparison_table(ensemble: Ensemble, judgements: Sequence[Judgement], title: str = "Runs against grains") -> Table:
+    """Runs against those of an ensemble."""
     bands = ", ".join(f"{symbol} {percent(band)}" for symbol, band in zip(SYMBOLS, BANDS, strict=True) if band)
     note = (
         f"{len(ensemble.runs)} runs of grains: {', '.join(run.label for run in ensemble.runs)}. "
         f"E_A: mean over them, in brackets nearest and farthest; the others relative to their mean. "
         f"Indistinguishable: {bands}; acceptable: twice that."
     )
-    title = f"Column a = {ensemble.aspect_ratio:g}, {ensemble.floor} floor"
     columns = ("law", "verdict", "deposit alone", *SYMBOLS, "largest E_A(t)", "decided by")
     return Table(title, note, columns, tuple(_verdict_row(found) for found in judgements))
 
@@ -84,7 +89,7 @@ def summary_table(report: Report) -> Table:
         )
     rows += [(title, *[""] * (len(report.columns) + 1), reason) for title, reason in report.unfitted.items()]
     columns = ("law", *(f"a = {ensemble.aspect_ratio:g}" for ensemble in report.columns), "indistinguishable", "limits")
-    note = "Each verdict is that of the worst of E_A, w, H and t50; in brackets the count for the deposit alone, without t50."
+    note = "Each verdict is that of the worst of E_A, w, H and t50; in brackets: counted without t50."
     return Table("Verdicts", note, columns, tuple(rows))
 
 

@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from validation.dem_report.fitted_laws import FittedLaw
 from validation.dem_report.judgement import Judgement
 from validation.dem_report.reference_set import Rows, Scatter
 from validation.dem_report.report import Report
-from validation.dem_report.sections import sections
+from validation.dem_report.sections import Section, sections
 from validation.dem_report.tables import SYMBOLS
 from validation.grains.distance import Verdict
 
@@ -22,24 +23,29 @@ PAGE, MARKDOWN, RESULT = "dem.html", "dem.md", "dem.json"
 
 def write_report(folder: Path, report: Report, shear: Rows, command: str) -> list[Path]:
     """Write page, Markdown and JSON into a folder; returns their paths."""
-    context = {
-        "title": "Laws against grains",
-        "introduction": _introduction(report),
-        "sections": sections(report, shear),
-        "verdicts": [str(found) for found in Verdict],
-        "command": command,
-    }
-    loader = PackageLoader("validation.report")
-    page = Environment(loader=loader, autoescape=True, trim_blocks=True).get_template("dem.html")
-    markdown = Environment(loader=loader, trim_blocks=True).get_template("dem.md")
+    parts = sections(report, shear)
     texts = {
-        PAGE: page.render(context),
-        MARKDOWN: markdown.render(context).strip() + "\n",
+        PAGE: rendered("dem.html", "Laws against grains", _introduction(report), parts, command),
+        MARKDOWN: rendered("dem.md", "Laws against grains", _introduction(report), parts, command),
         RESULT: json.dumps(_content(report, command), indent=2, allow_nan=False) + "\n",
     }
     for name, text in texts.items():
         atomic.write_text(folder / name, text)
     return [folder / name for name in texts]
+
+
+def rendered(template: str, title: str, introduction: Sequence[str], parts: Sequence[Section], command: str) -> str:
+    """A page, or the same in Markdown, of sections."""
+    loader = PackageLoader("validation.report")
+    environment = Environment(loader=loader, autoescape=template.endswith(".html"), trim_blocks=True)
+    page = environment.get_template(template).render(
+        title=title,
+        introduction=introduction,
+        sections=parts,
+        verdicts=[str(found) for found in Verdict],
+        command=command,
+    )
+    return page.strip() + "\n"
 
 
 def _introduction(report: Report) -> list[str]:

@@ -147,8 +147,10 @@ def compare(observation: Observation, references: Sequence[Observation]) -> Comp
     """
     for reference in references:
         refuse_other_size(observation, reference)
+    start = max(found.times[0] for found in references)
     end = min(found.times[-1] for found in (observation, *references))
-    times = np.unique([*observation.times[observation.times < end], end])
+    own = observation.times
+    times = np.unique([*own[(own >= start) & (own < end)], end])
     profiles = np.array(
         [[profile_distance(observation, reference, time) for time in times] for reference in references]
     )
@@ -167,7 +169,9 @@ def _relative(measure: Measure, observation: Observation, references: Sequence[O
     measured = measure.of(observation)
     reference = float(np.mean([measure.of(found) for found in references]))
     distance = measured / reference - 1.0 if reference else float("nan")
-    return Distance(measure.name, measure.symbol, measure.unit, measured, reference, distance, measure.band)
+    # What the reference does not tell is not judged.
+    band = None if np.isnan(reference) else measure.band
+    return Distance(measure.name, measure.symbol, measure.unit, measured, reference, distance, band)
 
 
 # Columns whose areas at the start differ by more than this factor are not the same case.

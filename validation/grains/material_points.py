@@ -39,12 +39,13 @@ def snapshots_of_run(run: RunFolder, scene: Scene) -> Iterator[GrainSnapshot]:
         yield GrainSnapshot(frame.time, _in_space(frame.positions[:, :2].T), _in_space(velocity[:, :2].T), volumes)
 
 
-def mirrored(snapshot: GrainSnapshot) -> GrainSnapshot:
-    """The whole column from its half at x > 0."""
+def mirrored(snapshot: GrainSnapshot, plane: float = 0.0) -> GrainSnapshot:
+    """The whole column from its half beyond x = plane [m]."""
     reflection = np.array([-1.0, 1.0, 1.0])
+    offset = np.array([2.0 * plane, 0.0, 0.0])
     return GrainSnapshot(
         snapshot.time,
-        np.concatenate([snapshot.positions * reflection, snapshot.positions]),
+        np.concatenate([offset + snapshot.positions * reflection, snapshot.positions]),
         np.concatenate([snapshot.velocities * reflection, snapshot.velocities]),
         np.concatenate([snapshot.solid_volumes, snapshot.solid_volumes]),
     )
