@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from grainlaw.compare_command import compare
+from grainlaw.dem_command import dem
 from grainlaw.element_command import element
 from grainlaw.materials_command import materials
 from grainlaw.plan_command import plan
@@ -28,6 +29,7 @@ app.command("run")(run)
 app.command("plan")(plan)
 app.command("compare")(compare)
 app.command("validate")(validate)
+app.add_typer(dem, name="dem")
 
 
 def _print_version(wanted: bool) -> None:
