@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from grainlaw.calibrate_command import calibrate
 from grainlaw.compare_command import compare
 from grainlaw.dem_command import dem
 from grainlaw.element_command import element
@@ -25,6 +26,7 @@ app = typer.Typer(
 # A command's module imports what it needs inside its function, so that no command pays for another's libraries.
 app.command("materials")(materials)
 app.command("element")(element)
+app.command("calibrate")(calibrate)
 app.command("run")(run)
 app.command("plan")(plan)
 app.command("compare")(compare)

@@ -18,13 +18,28 @@ def compare(
         typer.Option("--out", metavar="DIR", help="Also draw snapshots.png and history.png into this folder."),
     ] = None,
     field: Annotated[str, typer.Option("--field", help="Field of the snapshots.")] = "shear_strain",
+    dem: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--dem",
+            metavar="FILE",
+            help="Grains or an experiment to judge the runs by: a run's folder with run.json, a dump beside one, HDF5, "
+            "or a CSV of t, x, h; repeatable.",
+        ),
+    ] = None,
 ) -> None:
-    """Print a table of the final states, and draw the snapshots at equal normalised runout (the paper's Figure 2)."""
+    """Print a table of the final states, and draw the snapshots at equal normalised runout (the paper's Figure 2).
+
+    With --dem: print how far each run is from the grains, and with --out write a page with profiles over time.
+    """
     from rich.console import Console
     from rich.table import Table
 
     from mpm_core.output.run_folder import RunFolder
 
+    if dem:
+        _judge(folders, dem, out)
+        return
     runs = [(folder.name, RunFolder(folder)) for folder in folders]
     table = Table()
     for heading in (
@@ -54,6 +69,20 @@ def compare(
     Console(width=120).print(table)
     if out is not None:
         _draw(runs, out, field)
+
+
+def _judge(folders: list[Path], dem: list[Path], out: Path | None) -> None:
+    from grainlaw.dem_report_command import print_table
+    from validation.dem_report.own_grains import judged_runs, write_page
+    from validation.dem_report.tables import comparison_table
+    from validation.report.write import prepare
+
+    if out is not None:
+        prepare(out)
+    ensemble, judgements = judged_runs(folders, dem)
+    print_table(comparison_table(ensemble, judgements))
+    if out is not None:
+        typer.echo(f"  {write_page(out, ensemble, judgements)}")
 
 
 def _draw(runs: list[tuple[str, "RunFolder"]], out: Path, field: str) -> None:

@@ -18,25 +18,25 @@ def load_plugins(files: list[Path] | None) -> None:
         registry().load_file(path)
 
 
-def assigned(assignments: list[str] | None) -> dict[str, str]:
+def assigned(assignments: list[str] | None, option: str = "--set") -> dict[str, str]:
     """`name=value` texts as a dictionary. Raises InputError for a text without '=' and for a name given twice."""
     values: dict[str, str] = {}
     for text in assignments or []:
         name, equals, value = (part.strip() for part in text.partition("="))
         if not (name and equals and value):
-            raise InputError(f"--set {text}: expected name=value")
+            raise InputError(f"{option} {text}: expected name=value")
         if name in values:
-            raise InputError(f"--set {name} is given twice: {values[name]} and {value}")
+            raise InputError(f"{option} {name} is given twice: {values[name]} and {value}")
         values[name] = value
     return values
 
 
-def numbers(values: dict[str, str]) -> dict[str, float]:
+def numbers(values: dict[str, str], option: str = "--set") -> dict[str, float]:
     """The values as numbers. Raises InputError for a text that is none."""
     found = {}
     for name, text in values.items():
         try:
             found[name] = float(text)
         except ValueError:
-            raise InputError(f"--set {name}={text}: '{text}' is not a number") from None
+            raise InputError(f"{option} {name}={text}: '{text}' is not a number") from None
     return found

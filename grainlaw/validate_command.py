@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from grainlaw.dem_report_command import SUITE, judge_by_grains
+
 if TYPE_CHECKING:
     from validation.case import Case
     from validation.result import CaseResult
@@ -26,8 +28,15 @@ def validate(
 ) -> None:
     """Run validation cases: each has a reference, a band and a negative control that must leave the band.
 
+    `grainlaw validate dem` stands alone: it fits the laws to shear and compression of grains, judges them on collapses
+    of grains, and writes dem.html, dem.md and dem.json; default folder: runs/dem_report.
+
     Exit code 1 if a case leaves its band or a control does not.
     """
+    if names == [SUITE]:
+        judge_by_grains(out, quick)
+        return
+
     from validation.catalogue import chosen_cases
 
     cases = chosen_cases(names or [])

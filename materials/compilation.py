@@ -97,6 +97,7 @@ def registered(function: Callable[..., Any]) -> Callable[..., Any]:
     return _register_marked(function)
 
 
+@cache
 def pointwise_law(law: Law) -> PointwiseLaw:
     """The functions of a law, registered with the compiler."""
     _register_helpers()

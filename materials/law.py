@@ -28,7 +28,7 @@ def _no_contradiction(parameters: Any) -> str:
     return ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Law:
     """A constitutive law, declared once and used by the element tests, the MPM core, the output and the docs.
 

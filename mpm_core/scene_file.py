@@ -1,4 +1,4 @@
-"""Reading a scene file: TOML, values set on top of it, paths that count from the file."""
+"""Reading a scene file: TOML, files that it names, values set on top of it; paths count from the file."""
 
 import tomllib
 from collections.abc import Mapping
@@ -9,7 +9,7 @@ from materials import InputError
 
 
 def read_content(path: Path, overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables of a TOML file with values by dotted key set on top.
+    """The tables of a TOML file with the parameter files that it names, and with values by dotted key set on top.
 
     Raises InputError for a file that cannot be read and for a key that leads nowhere.
     """
@@ -21,10 +21,27 @@ def read_content(path: Path, overrides: Mapping[str, Any]) -> dict[str, Any]:
         raise InputError(f"{path}: not valid TOML: {error}") from None
     for key, value in overrides.items():
         _set_dotted(content, key, value)
+    materials = content.get("material")
+    for table in materials.values() if isinstance(materials, dict) else ():
+        _take_in_parameter_file(table, path)
     bodies = content.get("body")
     for body in bodies if isinstance(bodies, list) else ():
         _resolve_mesh_path(body, path.parent)
     return content
+
+
+def _take_in_parameter_file(table: Any, scene: Path) -> None:
+    """Complete a table of material constants by the TOML file that its key `parameters` names, if it has one."""
+    name = table.pop("parameters", None) if isinstance(table, dict) else None
+    if name is None:
+        return
+    file = scene.parent / str(name)
+    try:
+        values = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{scene}: parameter file {file} cannot be read: {error}") from None
+    for key, value in values.items():
+        table.setdefault(key, value)
 
 
 def _set_dotted(content: dict[str, Any], key: str, value: Any) -> None:

@@ -77,3 +77,19 @@ def test_the_scene_names_its_file_in_messages(tmp_path):
     path = write_scene(tmp_path / "mine.toml", BLOCK, {"grid.cell_size": -0.1})
     with pytest.raises(InputError, match=r"mine\.toml: grid\.cell_size = -0\.1"):
         Scene.load(path)
+
+
+def test_a_material_takes_what_it_does_not_state_from_its_parameter_file(tmp_path):
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    (folder / "fitted.toml").write_text("bulk_modulus = 2e5\npoisson_ratio = 0.1\n")
+    material = {"linear_elastic": {"parameters": "fitted.toml", "poisson_ratio": 0.3}}
+    path = write_scene(folder, changed(BLOCK, {"material": material}))
+    resolved = Scene.load(path).parameters("linear_elastic")
+    assert (resolved.bulk_modulus, resolved.poisson_ratio) == (2e5, 0.3)
+    stiffer = Scene.load(path, {"material.linear_elastic.bulk_modulus": 3e5})
+    assert stiffer.parameters("linear_elastic").bulk_modulus == 3e5
+    assert "parameters" not in tomllib.loads(stiffer.to_toml())["material"]["linear_elastic"]
+    (folder / "fitted.toml").unlink()
+    with pytest.raises(InputError, match=r"scene\.toml: parameter file .*fitted\.toml cannot be read"):
+        Scene.load(path)

@@ -46,7 +46,7 @@ def prepared(
     Raises InputError for an unknown law, set, file or name and for a value out of bounds.
     """
     law = get_material(law_name)
-    values, label, source = _base_values(law, parameters)
+    values, label, source = base_values(law, parameters)
     of_law, of_test = _sorted_out(law, test, assignments)
     if of_law:
         changes = " with " + ", ".join(f"{name} = {value:g}" for name, value in of_law.items())
@@ -56,8 +56,11 @@ def prepared(
     return specimen, checked_parameters(test.name, test.settings, {**of_test, **shared})
 
 
-def _base_values(law: Law, parameters: str | Path | None) -> tuple[dict[str, Any], str, str]:
-    """Values by name before any assignment, a label for figures, and where the values came from."""
+def base_values(law: Law, parameters: str | Path | None) -> tuple[dict[str, Any], str, str]:
+    """Values by name before any assignment, a label for figures, and where the values came from.
+
+    `parameters` is as for `prepared`. Raises InputError for an unknown set or a file that cannot be read.
+    """
     if parameters is None:
         if not law.parameter_sets:
             return {}, law.name, "values given one by one"

@@ -25,7 +25,7 @@ def figure_image(figure: Figure) -> str:
     if "y" in figure.logarithmic:
         axes.set_yscale("log")
     axes.legend(frameon=False, fontsize=8)
-    return _data_uri(canvas)
+    return data_uri(canvas)
 
 
 def convergence_image(found: Convergence) -> str:
@@ -36,7 +36,7 @@ def convergence_image(found: Convergence) -> str:
     axes.loglog(sizes, np.exp(offset) * sizes**slope, color="#333333", lw=1, label=f"order {slope:.2f}")
     axes.loglog(sizes, found.errors, "o", color=MEASURED_COLORS[0], ms=5, label="measured")
     axes.legend(frameon=False, fontsize=8)
-    return _data_uri(canvas)
+    return data_uri(canvas)
 
 
 def _axes(title: str, x_label: str, y_label: str) -> tuple[Canvas, Axes]:
@@ -60,7 +60,8 @@ def _draw(axes: Axes, curve: Curve, color: str) -> None:
         axes.plot(curve.x, curve.y, "o", color=color, ms=size, label=curve.label)
 
 
-def _data_uri(canvas: Canvas) -> str:
+def data_uri(canvas: Canvas) -> str:
+    """A figure as a data URI, so that the page needs no other file."""
     buffer = io.BytesIO()
     canvas.savefig(buffer, format="png", dpi=RESOLUTION)
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")

@@ -1,0 +1,115 @@
+"""Data files of calibration: what they may say, and one clear line for what they may not."""
+
+import numpy as np
+import pytest
+
+from materials import InputError, get_material
+from validation.calibration.data import read_data
+from validation.calibration.experiments import EXPERIMENTS
+from validation.calibration.quantities import QUANTITIES
+
+LAW = get_material("modified_cam_clay")
+HEADER = "axial_strain [1],deviatoric_stress [Pa]"
+SOUND = f"# test = triaxial-drained\n{HEADER}\n0.01,1e5\n0.02,2e5\n"
+
+
+def read(folder, text):
+    path = folder / "data.csv"
+    path.write_text(text)
+    return read_data(path, LAW)
+
+
+def test_file_is_read_with_its_statements_units_and_gaps(tmp_path):
+    (found,) = read(
+        tmp_path,
+        "\ufeff# Sand, test 7: a remark, with 'quotes\" = nothing\n# test = triaxial-drained,,\n"
+        "# initial_pressure = 200e3,,\n"
+        "axial_strain,standard_error_deviatoric_stress [Pa],deviatoric_stress [Pa]\n\n0.01,1e3,1e5\n0.02,,\n",
+    )
+    assert found.experiment.name == "triaxial-drained"
+    assert found.statements == {"initial_pressure": 200e3}
+    assert found.abscissa.tolist() == [0.01, 0.02]
+    (measured,) = found.measured
+    assert np.array_equal(measured.values, [1e5, np.nan], equal_nan=True)
+    assert measured.standard_errors[0] == 1e3
+
+
+def test_columns_may_tell_several_tests_apart(tmp_path):
+    first, second = read(
+        tmp_path,
+        "test,initial_pressure,overconsolidation_ratio,axial_strain,deviatoric_stress [Pa]\n"
+        "triaxial-drained,1e5,1,0.01,1\ntriaxial-drained,1e5,1,0.02,2\ntriaxial-undrained,2e5,4,0.01,3\n",
+    )
+    assert [found.experiment.name for found in (first, second)] == ["triaxial-drained", "triaxial-undrained"]
+    assert first.abscissa.tolist() == [0.01, 0.02]
+    assert second.statements == {"initial_pressure": 2e5, "overconsolidation_ratio": 4.0}
+    assert "triaxial-undrained" in second.label
+
+
+@pytest.mark.parametrize(("nominal", "logarithmic"), [(0.1, -np.log(0.9)), (-0.1, -np.log(1.1))])
+def test_nominal_strain_becomes_logarithmic(nominal, logarithmic, tmp_path):
+    (found,) = read(tmp_path, SOUND.replace("axial_strain", "nominal_axial_strain"))
+    assert found.driven(np.array([nominal])) == pytest.approx([logarithmic])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("# test = triaxial-drained\n", "", r"data.csv: no test; begin the file with '# test = NAME'"),
+        ("triaxial-drained", "triaxal-drained", "unknown test 'triaxal-drained'; did you mean 'triaxial-drained'"),
+        (
+            "\naxial",
+            "\n# initial_presure = 1e5\naxial",
+            "'initial_presure' is neither a setting of .*'initial_pressure'",
+        ),
+        ("\naxial", "\n# initial_pressure = 1e5 Pa\naxial", "initial_pressure = 1e5 Pa: '1e5 Pa' is not a number"),
+        (
+            "deviatoric_stress [Pa]",
+            "deviatoric_stress [kPa]",
+            r"'deviatoric_stress' has the unit \[kPa\]; allowed: \[Pa\]",
+        ),
+        ("deviatoric_stress [Pa]", "deviatoric_stress", r"'deviatoric_stress' has no unit; allowed: \[Pa\]"),
+        (
+            "deviatoric_stress [Pa]",
+            "deviatoric_stres [Pa]",
+            "unknown column 'deviatoric_stres'; did you mean 'deviatoric_",
+        ),
+        ("deviatoric_stress [Pa]", "deviatoric stress in Pa", "'deviatoric stress in Pa' is not of the form"),
+        ("deviatoric_stress [Pa]", "axial_strain [1]", "two columns are named 'axial_strain'"),
+        (
+            "deviatoric_stress [Pa]",
+            "standard_error_pressure [Pa]",
+            "'standard_error_pressure' without a column 'pressure'",
+        ),
+        ("axial_strain [1]", "pressure [Pa]", "needs one column axial_strain or nominal_axial_strain, not 0"),
+        ("0.02,2e5", "0.02,high", "line 4: 'high' is not a number"),
+        ("0.02,2e5", "0.02,inf", "line 4: 'inf' is not finite"),
+        ("0.02,2e5", "0.02", "line 4: 1 cells under 2 headings"),
+        ("0.02,2e5", ",2e5", "line 4: empty cell in axial_strain"),
+        ("0.01,1e5\n0.02,2e5\n", "", "no data: expected a header"),
+    ],
+)
+def test_faulty_file_is_refused_in_one_line(old, new, message, tmp_path):
+    assert SOUND.count(old) == 1
+    with pytest.raises(InputError, match=message) as error:
+        read(tmp_path, SOUND.replace(old, new))
+    assert "data.csv" in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_standard_error_of_zero_is_refused(tmp_path):
+    text = SOUND.replace("stress [Pa]\n", "stress [Pa],standard_error_deviatoric_stress [Pa]\n")
+    with pytest.raises(InputError, match="line 3: standard_error_deviatoric_stress must be a number above 0"):
+        read(tmp_path, text.replace("1e5\n", "1e5,0\n").replace("2e5\n", "2e5,1\n"))
+
+
+def test_missing_file_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"absent\.csv cannot be read"):
+        read_data(tmp_path / "absent.csv", LAW)
+
+
+def test_no_name_means_two_things():
+    """A column is a setting or a quantity; what drives one test may be measured in another, but not in the same one."""
+    settings = {name for experiment in EXPERIMENTS.values() for name in experiment.settings._fields}
+    controls = {name for experiment in EXPERIMENTS.values() for name in experiment.controls}
+    assert settings & (controls | set(QUANTITIES)) == set()

@@ -1,0 +1,195 @@
+"""The tests whose data can be fitted: what their first column may be, and the law's answer at its values.
+
+The element tests with a driven strain follow the strains of the data from row to row, so that unloading is a matter of
+the data. `steady-shear` holds the normal stress on the plane of shear and shears at each inertial number until nothing
+changes any more, as a plane shear cell does.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from materials import InputError, Parameter, SimulationError, inertial_number
+from materials.element.catalogue import get_element_test
+from materials.element.driver import follow_path
+from materials.element.path import LoadingPath
+from materials.element.point import Point, point_at_rest
+from materials.element.result import ElementResult
+from materials.element.run import initial_point
+from materials.element.settings import (
+    GrainDensity,
+    GrainDiameter,
+    InitialDensity,
+    InitialPressure,
+    StrainedSettings,
+    StrainRate,
+)
+from materials.element.shear import SHEAR
+from materials.element.specimen import Specimen
+from materials.errors import nearest_name
+from materials.tensor import SymmetricTensor, isotropic
+
+Array = NDArray[np.float64]
+
+NORMAL = SymmetricTensor(0.0, -1.0, 0.0, 0.0, 0.0, 0.0)
+# Of tau/(normal stress), over the second half of the strain at one inertial number.
+STEADY = 1e-4
+
+StrainStep = Annotated[float, Parameter("1", "largest strain of the driven component in one step", "(0, inf)")]
+
+
+class StrainedDataSettings(NamedTuple):
+    """Settings of a test whose driven strain follows the data."""
+
+    initial_pressure: InitialPressure = 100e3
+    density: InitialDensity = 0.0
+    grain_density: GrainDensity = 2450.0
+    strain_rate: StrainRate = 0.01
+    strain_step: StrainStep = 1e-3
+
+
+class SteadyShearSettings(NamedTuple):
+    """Settings of steady shear at held normal stress."""
+
+    held_normal_stress: Annotated[
+        float, Parameter("Pa", "held compressive stress on the plane of shear", "(0, inf)")
+    ] = 1e3
+    density: InitialDensity = 0.0
+    grain_density: GrainDensity = 2450.0
+    grain_diameter: GrainDiameter = 0.005
+    strain_to_steady: Annotated[
+        float, Parameter("1", "strain eps_xy at each inertial number, to become steady", "(0, inf)")
+    ] = 3.0
+    strain_step: StrainStep = 2e-3
+
+
+@dataclass(frozen=True)
+class Control:
+    """A column that drives a test: SI unit, one-line doc, and the driven quantity of the law that belongs to it."""
+
+    unit: str
+    doc: str
+    driven: Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A test whose data can be fitted.
+
+    controls  the columns that may drive it, by name; a data file has one of them
+    settings  NamedTuple class whose fields are annotated with `Parameter`, all with defaults
+    history   (specimen, settings, driven values of shape (rows,)) -> the start and the point at each value
+    """
+
+    name: str
+    summary: str
+    controls: Mapping[str, Control]
+    settings: type[Any]
+    history: Callable[[Specimen, Any, Array], ElementResult]
+
+
+def _as_it_is(values: Array) -> Array:
+    return values
+
+
+LOGARITHMIC = "axial strain -ln(l/l0), compression-positive"
+AXIAL = {
+    "axial_strain": Control("1", LOGARITHMIC, _as_it_is),
+    "nominal_axial_strain": Control(
+        "1", "axial strain 1 - l/l0, compression-positive", lambda strain: -np.log1p(-strain)
+    ),
+}
+VOLUMETRIC = {"volumetric_strain": Control("1", "volumetric strain -ln(V/V0), compression-positive", _as_it_is)}
+SHEARED = {
+    "engineering_shear_strain": Control("1", "gamma = 2 eps_xy", lambda strain: 0.5 * strain),
+    "shear_strain": Control("1", "tensor component eps_xy", _as_it_is),
+}
+# The same halving as `own_inertial_number_constant`: gamma_dot is half of the engineering rate.
+NUMBERED = {
+    "engineering_inertial_number": Control(
+        "1",
+        "I with the engineering rate dv_x/dy and p the normal stress on the plane of shear",
+        lambda number: 0.5 * number,
+    ),
+    "inertial_number": Control(
+        "1", "I with gamma_dot = sqrt(1/2 D_d:D_d) and p the normal stress on the plane of shear", _as_it_is
+    ),
+}
+
+
+def _strained(name: str, controls: Mapping[str, Control]) -> Experiment:
+    test = get_element_test(name)
+
+    def history(specimen: Specimen, settings: StrainedDataSettings, strains: Array) -> ElementResult:
+        changes = np.diff(strains, prepend=0.0)
+        substeps = max(1, math.ceil(float(np.max(np.abs(changes))) / settings.strain_step))
+        dt = max(float(np.max(np.abs(changes))), 1e-300) / substeps / settings.strain_rate
+        common = {
+            name: getattr(settings, name) for name in ("initial_pressure", "density", "grain_density", "strain_rate")
+        }
+        of_test = StrainedSettings(**common, final_strain=dt * settings.strain_rate, time_step=dt)
+        path = replace(test.path(of_test), rates=np.repeat(changes / (substeps * dt), substeps))
+        start = initial_point(specimen, of_test)
+        points = (start, *follow_path(specimen, path, start, substeps))
+        return ElementResult(specimen, test.name, of_test, path.steps, points)
+
+    return Experiment(test.name, test.summary, controls, StrainedDataSettings, history)
+
+
+def steady_shear(specimen: Specimen, settings: SteadyShearSettings, numbers: Array) -> ElementResult:
+    """The steady state at each inertial number, one after the other. Raises SimulationError where it is not steady."""
+    stress = isotropic(-settings.held_normal_stress)
+    density = specimen.density(settings.held_normal_stress, settings.density)
+    start = point_at_rest(stress, density, specimen.law.initial_state(stress, density, specimen.parameters))
+    unit_number = inertial_number(1.0, settings.held_normal_stress, settings.grain_diameter, settings.grain_density)
+    half = math.ceil(0.5 * settings.strain_to_steady / settings.strain_step)
+    points = [start]
+    for number in numbers:
+        rate = float(number) / unit_number
+        path = LoadingPath(
+            dt=0.5 * settings.strain_to_steady / half / rate,
+            rates=np.full(2 * half, rate),
+            direction=SHEAR,
+            free=NORMAL,
+            held=NORMAL,
+            target=settings.held_normal_stress,
+            held_name="normal stress",
+        )
+        halfway, end = follow_path(specimen, path, points[-1], half)
+        _check_steady(specimen, settings, halfway, end, float(number))
+        points.append(end)
+    return ElementResult(specimen, "steady-shear", settings, 2 * half * len(numbers), points)
+
+
+def _check_steady(specimen: Specimen, settings: SteadyShearSettings, halfway: Point, end: Point, number: float) -> None:
+    change = abs(end.stress.xy - halfway.stress.xy) / settings.held_normal_stress
+    if not change <= STEADY:
+        raise SimulationError(
+            f"{specimen.law.name}: shear at I = {number:g} is not steady after eps_xy = {settings.strain_to_steady:g} "
+            f"(the friction still changes by {change:.2g}); state a larger strain_to_steady in the data file"
+        )
+
+
+EXPERIMENTS = {
+    found.name: found
+    for found in (
+        _strained("triaxial-drained", AXIAL),
+        _strained("triaxial-undrained", AXIAL),
+        _strained("biaxial", AXIAL),
+        _strained("oedometer", AXIAL),
+        _strained("isotropic", VOLUMETRIC),
+        _strained("simple-shear", SHEARED),
+        Experiment("steady-shear", "steady shear at held normal stress", NUMBERED, SteadyShearSettings, steady_shear),
+    )
+}
+
+
+def get_experiment(name: str) -> Experiment:
+    """The experiment of that name. Raises InputError with the nearest valid name."""
+    if name not in EXPERIMENTS:
+        raise InputError(f"unknown test '{name}'; {nearest_name(name, EXPERIMENTS)}")
+    return EXPERIMENTS[name]

@@ -1,0 +1,42 @@
+"""A user's runs against a user's grains."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from mpm_core.output import atomic
+from validation.dem_report.judgement import Judgement
+from validation.dem_report.reference_set import Ensemble
+from validation.dem_report.sections import Section, column_figures
+from validation.dem_report.tables import comparison_table
+from validation.dem_report.write import rendered
+from validation.grains.distance import compare
+from validation.grains.reference_file import load_reference
+from validation.grains.run_observation import observe_run
+
+PAGE = "comparison.html"
+
+
+def judged_runs(folders: Sequence[Path], references: Sequence[Path]) -> tuple[Ensemble, list[Judgement]]:
+    """Each run against all references, observed with the kernel of the references.
+
+    Raises InputError in one line for whatever cannot be read, and for columns of different size.
+    """
+    observed = [load_reference(path) for path in references]
+    width = float(np.mean([reference.description["kernel_width"] for reference in observed]))
+    ensemble = Ensemble(" and ".join(reference.label for reference in observed), tuple(observed))
+    judgements = []
+    for folder in folders:
+        run = observe_run(folder, width)
+        judgements.append(Judgement(folder.name, ensemble, run, compare(run, observed)))
+    return ensemble, judgements
+
+
+def write_page(folder: Path, ensemble: Ensemble, judgements: Sequence[Judgement]) -> Path:
+    """Write a self-contained page with the table and the figures; returns its path."""
+    table = comparison_table(ensemble, judgements)
+    section = Section(table.title, tables=(table,), figures=column_figures(ensemble, judgements))
+    text = rendered("dem.html", "Runs against grains", (), (section,), "grainlaw compare --dem")
+    atomic.write_text(folder / PAGE, text)
+    return folder / PAGE

@@ -1,0 +1,116 @@
+"""What the page says, in its order: the scatter of the grains first, then what was fitted, judged and left out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from validation.dem_report.figures import distance_figure, profile_figure, series_figure, shear_figure
+from validation.dem_report.judgement import Judgement
+from validation.dem_report.reference_set import Ensemble, Rows
+from validation.dem_report.report import Report
+from validation.dem_report.tables import (
+    Table,
+    cost_table,
+    parameter_table,
+    scatter_table,
+    summary_table,
+    variant_table,
+    verdict_table,
+)
+from validation.grains.distance import PROFILE_BAND
+
+MODELLED = (
+    "Both sides are observed by the same functions. Solid fraction: each grain, or material point, is spread by a "
+    "Gaussian whose standard deviation is one mean grain diameter over cells of 7.5 mm, mirrored at the floor. Surface "
+    "h(x): the highest level where the solid fraction falls through half of that of the packing before the release. "
+    "Runout w: half of the width over which h exceeds one grain diameter. H: the largest h. t50: when half of the "
+    "growth of the runout is reached. E_A: area between two surfaces over the mean area below them. phi: mean solid "
+    "fraction two diameters below the surface and one above the floor."
+)
+CONTINUUM = (
+    "The continuum starts with the mass and the mean surface of the packing at rest under its own weight, with equal "
+    "normal stresses, on a floor with friction 0.7; by symmetry half of the column is run, in plane strain."
+)
+LEFT_OUT = (
+    "Left out of the continuum: the rolling of grains on the floor, the layering of grains at smooth walls before the "
+    "release, the depth of four grains between periodic sides, and whatever a law does not describe (see its limits). "
+    "Left out of the grains: shapes other than spheres, air, cohesion."
+)
+
+
+@dataclass(frozen=True)
+class ReportFigure:
+    """An image as a data URI, and what it shows."""
+
+    image: str
+    caption: str
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page."""
+
+    title: str
+    paragraphs: tuple[str, ...] = ()
+    tables: tuple[Table, ...] = ()
+    figures: tuple[ReportFigure, ...] = ()
+
+
+def sections(report: Report, shear: Rows) -> list[Section]:
+    """All parts of the page."""
+    scatter = scatter_table(report.scatter)
+    controls = variant_table(
+        "Negative controls",
+        "The first law with one deliberate mistake; each has to come out as differs.",
+        report.controls,
+    )
+    parts = [
+        Section(scatter.title, tables=(scatter,)),
+        Section("Verdicts", tables=(summary_table(report),)),
+        _fits(report, shear),
+        *(_column(report, ensemble) for ensemble in report.columns),
+        Section(controls.title, (_controls_said(report),), (controls,)),
+    ]
+    if report.limits:
+        note = (
+            "The first law with one thing changed, nothing refitted: what moves towards the grains is what limits it."
+        )
+        parts.append(
+            Section("What limits the law", tables=(variant_table("What limits the law", note, report.limits),))
+        )
+    cost = cost_table(report)
+    return [*parts, Section(cost.title, tables=(cost,)), Section("What was modelled", (MODELLED, CONTINUUM, LEFT_OUT))]
+
+
+def _controls_said(report: Report) -> str:
+    if report.controls_differ:
+        return "All of them differ."
+    missed = ", ".join(found.name for found in report.controls if found.verdict != "differs")
+    return f"NOT all of them differ: {missed}."
+
+
+def _fits(report: Report, shear: Rows) -> Section:
+    table = parameter_table(report.laws)
+    remarks = [f"{law.judged.title}: {remark}." for law in report.laws for remark in law.remarks]
+    commands = [f"{law.judged.title}: in the folder data, {law.command}" for law in report.laws]
+    image = shear_figure(shear, {law.judged.title: law.curve for law in report.laws})
+    caption = "Plane shear of the grains: friction over the mean pressure and solid fraction; fitted laws."
+    return Section(table.title, (*remarks, *commands), (table,), (ReportFigure(image, caption),))
+
+
+def _column(report: Report, ensemble: Ensemble) -> Section:
+    judgements = report.of_column(ensemble)
+    table = verdict_table(ensemble, judgements)
+    return Section(table.title, tables=(table,), figures=column_figures(ensemble, judgements))
+
+
+def column_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple[ReportFigure, ...]:
+    """Surfaces, series and E_A over time on one column."""
+    name = ensemble.case
+    return (
+        ReportFigure(profile_figure(ensemble, judgements), f"Surfaces over time, {name}."),
+        ReportFigure(series_figure(ensemble, judgements), f"Runout, height, energy, solid fraction, {name}."),
+        ReportFigure(
+            distance_figure(judgements, PROFILE_BAND),
+            f"E_A over time, {name}; green: indistinguishable, yellow: acceptable; shaded: nearest to farthest.",
+        ),
+    )

@@ -1,0 +1,70 @@
+"""Material points as grains: each a grain whose volume of solid is its mass over the grain density.
+
+In plane strain a point has one metre of depth; its plane (x, y) is the (x, z) of the grains.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from materials import InputError
+from mpm_core.body import Body
+from mpm_core.columns import VX, VY, X, Y
+from mpm_core.initial import build_bodies
+from mpm_core.output.run_folder import RunFolder
+from mpm_core.scene import Scene
+from validation.grains.snapshot import Array, GrainSnapshot
+
+DEPTH = 1.0
+
+
+def snapshot_of_bodies(time: float, bodies: Sequence[Body]) -> GrainSnapshot:
+    """The points of all bodies at a time [s]. Raises InputError for a law without a grain density."""
+    plane = np.concatenate([body.points[[X, Y]] for body in bodies], axis=1)
+    velocity = np.concatenate([body.points[[VX, VY]] for body in bodies], axis=1)
+    return GrainSnapshot(time, _in_space(plane), _in_space(velocity), _solid_volumes(bodies))
+
+
+def snapshots_of_run(run: RunFolder, scene: Scene) -> Iterator[GrainSnapshot]:
+    """The frames of a run's folder. Raises InputError if they hold no velocity."""
+    # Frames list the points in the order of generation, as freshly built bodies do.
+    volumes = _solid_volumes(build_bodies(scene))
+    for number in range(len(run.frame_files)):
+        frame = run.load_frame(number)
+        if len(frame.positions) != len(volumes):
+            raise InputError(
+                f"{run.path}: frame {number} holds {len(frame.positions)} points, the scene {len(volumes)}"
+            )
+        velocity = frame.field("velocity").values
+        yield GrainSnapshot(frame.time, _in_space(frame.positions[:, :2].T), _in_space(velocity[:, :2].T), volumes)
+
+
+def mirrored(snapshot: GrainSnapshot, plane: float = 0.0) -> GrainSnapshot:
+    """The whole column from its half beyond x = plane [m]."""
+    reflection = np.array([-1.0, 1.0, 1.0])
+    offset = np.array([2.0 * plane, 0.0, 0.0])
+    return GrainSnapshot(
+        snapshot.time,
+        np.concatenate([offset + snapshot.positions * reflection, snapshot.positions]),
+        np.concatenate([snapshot.velocities * reflection, snapshot.velocities]),
+        np.concatenate([snapshot.solid_volumes, snapshot.solid_volumes]),
+    )
+
+
+def grain_density(bodies: Sequence[Body]) -> float:
+    """The one grain density of all bodies [kg/m3]. Raises InputError if there is none, or several."""
+    found = {getattr(body.parameters, "grain_density", None) for body in bodies}
+    if len(found) > 1 or None in found:
+        laws = ", ".join(body.law.name for body in bodies)
+        raise InputError(f"laws {laws}: grains and points compare by solid fraction, which needs one grain_density")
+    return float(found.pop() or 0.0)
+
+
+def _solid_volumes(bodies: Sequence[Body]) -> Array:
+    density = grain_density(bodies)
+    return np.concatenate([np.full(body.count, body.point_mass / density) for body in bodies])
+
+
+def _in_space(plane: Array) -> Array:
+    """Rows (x, y) of the plane as (x, 0, z) of each point, shape (n, 3)."""
+    return np.column_stack([plane[0], np.zeros(plane.shape[1]), plane[1]])

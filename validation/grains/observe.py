@@ -1,0 +1,142 @@
+"""From grains, or material points, to an observation."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from materials import InputError
+from validation.grains.coarse_graining import Kernel, Lattice, column_lattice, grain_kernel, solid_fraction
+from validation.grains.observation import Observation
+from validation.grains.readers.run_folder import read_snapshots
+from validation.grains.run_description import RunDescription, read_run_description
+from validation.grains.snapshot import Array, GrainSnapshot, sphere_diameters
+from validation.grains.surface import bulk_solid_fraction, fronts, interior_solid_fraction, surface_height
+
+# Room for the kernel around the material, in its widths.
+MARGIN = 4.0
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What the definitions need to know of a run, in SI units.
+
+    width            of the kernel: one mean grain diameter
+    depth            over which the grains are averaged; 1 for material points in plane strain
+    center           of the column along x
+    bulk             solid fraction before the release; None: that of the first snapshot
+    """
+
+    width: float
+    depth: float
+    floor: float
+    center: float
+    grain_density: float
+    gravity: float
+    bulk: float | None = None
+
+
+def observe_folder(folder: Path) -> Observation:
+    """The observation of a DEM run's folder. Raises InputError in one line for whatever is wrong in it."""
+    description = read_run_description(folder)
+    snapshots = list(read_snapshots(folder, description))
+    return observe(
+        snapshots, setting_of(description, snapshots[0]), description.model_dump(mode="json", exclude={"frames"})
+    )
+
+
+def setting_of(description: RunDescription, first: GrainSnapshot) -> Setting:
+    """The setting of a DEM run; the kernel's width is the mean diameter of its grains.
+
+    Raises InputError if that is not the diameter which the description names.
+    """
+    diameter = float(sphere_diameters(first.solid_volumes).mean())
+    named = description.mean_diameter
+    if named is not None and not 0.5 < diameter / named < 2.0:
+        raise InputError(
+            f"run.json: mean_diameter = {named:g} m, but the grains have {diameter:g} m; are the units the same?"
+        )
+    return Setting(
+        width=diameter,
+        depth=description.depth,
+        floor=description.floor_level,
+        center=description.center,
+        grain_density=description.grain_density,
+        gravity=description.gravity,
+        bulk=description.solid_fraction,
+    )
+
+
+def observe(snapshots: Iterable[GrainSnapshot], setting: Setting, description: dict[str, Any]) -> Observation:
+    """Profiles and series at the times of all snapshots; fields at the first, at half of the runout and at the last."""
+    snapshots = list(snapshots)
+    lattice = _lattice(snapshots, setting)
+    kernels = [grain_kernel(snapshot, lattice, setting.width, setting.depth) for snapshot in snapshots]
+    fractions = [solid_fraction(snapshot, kernel) for snapshot, kernel in zip(snapshots, kernels, strict=True)]
+    bulk = setting.bulk or bulk_solid_fraction(fractions[0], lattice, setting.width)
+    surface = np.array([surface_height(phi, lattice, bulk) for phi in fractions])
+    ends = np.array([fronts(lattice.x, height, setting.width) for height in surface])
+    series = {
+        "runout": 0.5 * (ends[:, 1] - ends[:, 0]),
+        "front_left": ends[:, 0],
+        "front_right": ends[:, 1],
+        "height": surface.max(axis=1),
+        "interior_solid_fraction": np.array(
+            [
+                interior_solid_fraction(phi, height, lattice, setting.width)
+                for phi, height in zip(fractions, surface, strict=True)
+            ]
+        ),
+    }
+    series |= _integrals(snapshots, setting)
+    chosen = _chosen(series["runout"])
+    fields = [_fields(snapshots[number], kernels[number], fractions[number]) for number in chosen]
+    times = np.array([snapshot.time for snapshot in snapshots])
+    return Observation(
+        description={**description, "bulk_solid_fraction": bulk, "kernel_width": setting.width},
+        times=times,
+        x=lattice.x - setting.center,
+        z=lattice.z - setting.floor,
+        surface=surface,
+        series=series,
+        snapshot_times=times[chosen],
+        snapshots={name: np.array([field[name] for field in fields]) for name in fields[0]},
+    )
+
+
+def _lattice(snapshots: list[GrainSnapshot], setting: Setting) -> Lattice:
+    margin = MARGIN * setting.width
+    reach = max(float(np.abs(snapshot.positions[:, 0] - setting.center).max()) for snapshot in snapshots)
+    top = max(float(snapshot.positions[:, 2].max()) for snapshot in snapshots)
+    return column_lattice(setting.center, reach + margin, setting.floor, top - setting.floor + margin)
+
+
+def _integrals(snapshots: list[GrainSnapshot], setting: Setting) -> dict[str, Array]:
+    """Centre of mass and translational energies per metre of depth."""
+    rows = []
+    for snapshot in snapshots:
+        mass = setting.grain_density * snapshot.solid_volumes / setting.depth
+        x, _, z = np.average(snapshot.positions, axis=0, weights=mass)
+        height = z - setting.floor
+        kinetic = 0.5 * float(mass @ (snapshot.velocities**2).sum(axis=1))
+        rows.append((x - setting.center, height, kinetic, mass.sum() * setting.gravity * height))
+    names = ("center_of_mass_x", "center_of_mass_height", "kinetic_energy", "potential_energy")
+    return dict(zip(names, np.array(rows).T, strict=True))
+
+
+def _chosen(runout: Array) -> list[int]:
+    """The first snapshot, the one nearest to half of the growth of the runout, and the last."""
+    halfway = int(np.argmin(np.abs(runout - 0.5 * (runout[0] + runout[-1]))))
+    return sorted({0, halfway, len(runout) - 1})
+
+
+def _fields(snapshot: GrainSnapshot, kernel: Kernel, phi: Array) -> dict[str, Array]:
+    """Solid fraction, and the velocity as momentum over mass; 0 without material."""
+    present = phi > 1e-3
+    velocities = [
+        np.divide(kernel.field(snapshot.solid_volumes * component), phi, out=np.zeros_like(phi), where=present)
+        for component in (snapshot.velocities[:, 0], snapshot.velocities[:, 2])
+    ]
+    return {"solid_fraction": phi, "velocity_x": velocities[0], "velocity_z": velocities[1]}

@@ -1,0 +1,1 @@
+"""Readers of DEM dumps, one file for each format; all return `GrainSnapshot`."""

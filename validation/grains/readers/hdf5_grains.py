@@ -1,0 +1,55 @@
+"""Grains in HDF5: `/frames/NNNNNN` with the attribute `time` [s] and the datasets position, velocity and radius.
+
+position and velocity have the shape (n, 3), radius and the optional type the shape (n,); SI units.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from materials import InputError
+from validation.grains.readers.raw_frame import RawFrame
+
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
+FRAMES = "frames"
+
+
+def recognises(path: Path, start: bytes) -> bool:
+    """By the signature of HDF5 or the ending."""
+    return start.startswith(SIGNATURE) or path.suffix in (".h5", ".hdf5")
+
+
+def frames(path: Path) -> Iterator[RawFrame]:
+    """All frames in the order of their names. Raises InputError for a damaged file or one of another kind."""
+    try:
+        with h5py.File(path) as file:
+            if FRAMES not in file or len(file[FRAMES]) == 0:
+                raise InputError(f"{path} has no group '{FRAMES}' with grains in it")
+            for name in sorted(file[FRAMES]):
+                yield _frame(path, name, file[FRAMES][name])
+    except (OSError, RuntimeError) as error:
+        raise InputError(f"{path} cannot be read as HDF5: {str(error).splitlines()[0]}") from None
+
+
+def _frame(path: Path, name: str, group: h5py.Group) -> RawFrame:
+    columns = {}
+    for key, shape, parts in (
+        ("position", 2, ("x", "y", "z")),
+        ("velocity", 2, ("vx", "vy", "vz")),
+        ("radius", 1, ("radius",)),
+        ("type", 1, ("type",)),
+    ):
+        if key not in group:
+            if key in ("position", "radius"):
+                raise InputError(f"{path}: {FRAMES}/{name} has no dataset '{key}'")
+            continue
+        values = np.asarray(group[key], float)
+        if values.ndim != shape or (shape == 2 and values.shape[1] != 3):
+            wanted = "(n, 3)" if shape == 2 else "(n,)"
+            raise InputError(f"{path}: {FRAMES}/{name}/{key} has the shape {values.shape}, expected {wanted}")
+        columns.update(zip(parts, values.reshape(len(values), -1).T, strict=True))
+    if len({len(values) for values in columns.values()}) > 1:
+        raise InputError(f"{path}: the datasets of {FRAMES}/{name} differ in length")
+    return RawFrame(path, columns, float(group.attrs["time"]) if "time" in group.attrs else None)

@@ -1,0 +1,36 @@
+"""Whatever a user has of grains as an observation: a run's folder, one of its dumps, HDF5, or a table of surfaces."""
+
+from pathlib import Path
+
+from materials import InputError
+from validation.grains.observation import Observation, is_observation, read_observation
+from validation.grains.observe import observe, observe_folder, setting_of
+from validation.grains.readers.run_folder import read_snapshots
+from validation.grains.run_description import RUN_DESCRIPTION_NAME, read_run_description
+from validation.grains.surface_table import is_surface_table, read_surface_table
+
+
+def load_reference(path: Path) -> Observation:
+    """The observation of a folder with run.json, a dump beside one, an HDF5 observation, or a CSV of t, x, h.
+
+    Raises InputError in one line for a missing, damaged or unknown file.
+    """
+    if path.is_dir():
+        return observe_folder(path)
+    if not path.is_file():
+        raise InputError(f"{path} does not exist")
+    if path.stat().st_size == 0:
+        raise InputError(f"{path} is empty")
+    if is_observation(path):
+        return read_observation(path)
+    if is_surface_table(path):
+        return read_surface_table(path)
+    if not (path.parent / RUN_DESCRIPTION_NAME).is_file():
+        raise InputError(
+            f"{path} is neither an observation nor a table of t, x, h; a dump of grains needs a {RUN_DESCRIPTION_NAME} "
+            "beside it, with depth and grain_density"
+        )
+    description = read_run_description(path.parent).model_copy(update={"frames": None, "grains_files": path.name})
+    snapshots = list(read_snapshots(path.parent, description))
+    provenance = description.model_dump(mode="json", exclude={"frames"})
+    return observe(snapshots, setting_of(description, snapshots[0]), {"label": path.stem, **provenance})

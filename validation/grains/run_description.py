@@ -1,0 +1,70 @@
+"""`run.json`: what a DEM run was, beside its dumps."""
+
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from materials import InputError
+
+RUN_DESCRIPTION_NAME = "run.json"
+
+
+class FrameEntry(BaseModel):
+    """One dump of the run: its file, its time on the run's clock [s] and the file of the contacts, if any."""
+
+    model_config = ConfigDict(extra="allow", frozen=True, allow_inf_nan=False)
+
+    file: str
+    time: float | None = None
+    contacts: str | None = None
+
+
+class RunDescription(BaseModel):
+    """A DEM run in SI units; x along the slope, y along the depth, z up; other keys are kept as provenance.
+
+    depth          length along y over which the grains are averaged [m]
+    frames         the dumps; without it, every file of the folder that looks like one
+    grains_files   instead of frames: a pattern of the dumps' names
+    release_time   on the run's clock [s]; all other times count from it
+    time_step      turns the step number of a LIGGGHTS dump into a time [s]
+    floor_level    level from which heights count [m]
+    center         of the column along x [m]
+    solid_fraction of the packing before the release; without it, that of the first frame
+    mobile_types   types of the grains that count; needed where a dump holds several, as with a floor of glued grains
+    """
+
+    model_config = ConfigDict(extra="allow", frozen=True, allow_inf_nan=False)
+
+    depth: float = Field(gt=0)
+    grain_density: float = Field(gt=0)
+    case: str = ""
+    code: str = ""
+    seed: int | None = None
+    wall_time: float | None = None
+    steps: int | None = None
+    frames: tuple[FrameEntry, ...] | None = None
+    grains_files: str = ""
+    release_time: float = 0.0
+    time_step: float | None = Field(default=None, gt=0)
+    floor: str = ""
+    floor_level: float = 0.0
+    center: float = 0.0
+    half_width: float | None = Field(default=None, gt=0)
+    initial_height: float | None = Field(default=None, gt=0)
+    mean_diameter: float | None = Field(default=None, gt=0)
+    gravity: float = Field(default=9.81, gt=0)
+    solid_fraction: float | None = Field(default=None, gt=0, lt=1)
+    mobile_types: tuple[int, ...] | None = None
+
+
+def read_run_description(folder: Path) -> RunDescription:
+    """The description in a run's folder. Raises InputError in one line if it is missing or wrong."""
+    path = folder / RUN_DESCRIPTION_NAME
+    if not path.is_file():
+        raise InputError(f"{folder} holds no {RUN_DESCRIPTION_NAME}, which tells at least depth and grain_density")
+    try:
+        return RunDescription.model_validate_json(path.read_bytes())
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"]) or "the file"
+        raise InputError(f"{path}: {where}: {first['msg']}") from None

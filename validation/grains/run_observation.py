@@ -1,0 +1,46 @@
+"""A run's folder of this library observed as grains are."""
+
+from pathlib import Path
+
+from mpm_core.body import Body
+from mpm_core.columns import X
+from mpm_core.initial import build_bodies
+from mpm_core.output.run_folder import RunFolder
+from mpm_core.recorder import SCENE_NAME
+from mpm_core.scene import Scene
+from validation.grains.material_points import DEPTH, grain_density, mirrored, snapshots_of_run
+from validation.grains.observation import Observation
+from validation.grains.observe import Setting, observe
+
+
+def observe_run(folder: Path, width: float) -> Observation:
+    """The observation of a run with a kernel of the grains' width [m].
+
+    A column that stands against a free-slip side is taken for the half of one that is symmetric about it.
+    Raises InputError if the folder holds no run, or frames without velocity.
+    """
+    run = RunFolder(folder)
+    scene = Scene.load(folder / SCENE_NAME)
+    bodies = build_bodies(scene)
+    lowest = min(float(body.points[X].min()) for body in bodies)
+    highest = max(float(body.points[X].max()) for body in bodies)
+    snapshots = snapshots_of_run(run, scene)
+    center = 0.5 * (lowest + highest)
+    left = scene.grid.lower[0]
+    if scene.boundary.left.kind == "free_slip" and lowest - left < scene.grid.cell_size:
+        center = left
+        snapshots = (mirrored(snapshot, left) for snapshot in snapshots)
+    setting = Setting(
+        width=width,
+        depth=DEPTH,
+        floor=scene.grid.lower[1],
+        center=center,
+        grain_density=grain_density(bodies),
+        gravity=-scene.gravity[1],
+    )
+    return observe(snapshots, setting, _description(folder, scene, bodies))
+
+
+def _description(folder: Path, scene: Scene, bodies: list[Body]) -> dict[str, object]:
+    laws = ", ".join(dict.fromkeys(body.law.name for body in bodies))
+    return {"label": folder.name, "laws": laws, "points": sum(body.count for body in bodies), "title": scene.title}

@@ -1,0 +1,53 @@
+"""What every reader returns: the grains, or the material points, of one time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class GrainSnapshot:
+    """Grains at one time; x along the slope, y along the depth, z up.
+
+    time            on the clock of the run that wrote them [s]
+    positions       of the centres, shape (n, 3) [m]
+    velocities      of the centres, shape (n, 3) [m/s]
+    solid_volumes   volume of solid in each grain, shape (n,) [m3]; of a material point its mass over the grain density
+    """
+
+    time: float
+    positions: Array
+    velocities: Array
+    solid_volumes: Array
+
+    @property
+    def count(self) -> int:
+        """Number of grains."""
+        return len(self.solid_volumes)
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Contacts at one time.
+
+    points     where the grains touch, shape (n, 3) [m]
+    branches   from the centre of the second grain to that of the first, shape (n, 3) [m]
+    forces     on the first grain, shape (n, 3) [N]
+    """
+
+    points: Array
+    branches: Array
+    forces: Array
+
+
+def sphere_volumes(radii: Array) -> Array:
+    """Volumes of spheres [m3] from their radii [m]."""
+    return 4.0 / 3.0 * np.pi * radii**3
+
+
+def sphere_diameters(volumes: Array) -> Array:
+    """Diameters of spheres [m] from their volumes [m3]."""
+    return 2.0 * np.cbrt(volumes / (4.0 / 3.0 * np.pi))

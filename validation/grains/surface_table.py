@@ -1,0 +1,83 @@
+"""A surface over time, or a deposit, as CSV: the least that an experiment tells.
+
+    # grain_diameter = 0.003
+    t,x,h
+    0.0,-0.1,0.0
+    0.0,0.0,0.1
+
+t in seconds since the release, x from the axis of the column and the height h in metres; rows in any order.
+"""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from materials import InputError
+from validation.grains.coarse_graining import SPACING
+from validation.grains.observation import Observation
+from validation.grains.readers.raw_frame import parsed_rows, read_text
+from validation.grains.snapshot import Array
+from validation.grains.surface import fronts
+
+COLUMNS = ("t", "x", "h")
+# Larger lengths than this are taken for millimetres.
+LARGEST_LENGTH = 100.0
+_DIAMETER = re.compile(r"#\s*grain_diameter\s*=\s*(\S+)\s*")
+
+
+def is_surface_table(path: Path) -> bool:
+    """Whether a file is text whose first line that is no comment names t, x and h."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except UnicodeDecodeError:
+        return False
+    header = next((line for line in lines if line.strip() and not line.startswith("#")), "")
+    return set(COLUMNS) <= {name.strip() for name in header.split(",")}
+
+
+def read_surface_table(path: Path) -> Observation:
+    """Surface, runout and height of such a file. Raises InputError in one line for whatever is wrong in it."""
+    lines = read_text(path)
+    comments = [line for line in lines if line.startswith("#")]
+    rows = [line for line in lines if line.strip() and not line.startswith("#")]
+    names = [name.strip() for name in rows[0].split(",")]
+    values = parsed_rows(path, rows[1:], len(names), len(comments) + 2, ",")
+    if len(values) == 0:
+        raise InputError(f"{path}: no rows follow its header")
+    t, x, h = (values[:, names.index(name)] for name in COLUMNS)
+    if not np.isfinite(values).all():
+        raise InputError(f"{path}: values that are no finite numbers")
+    if max(np.abs(x).max(), h.max()) > LARGEST_LENGTH:
+        raise InputError(f"{path}: lengths up to {np.abs(x).max():g} m; is the file in millimetres?")
+    diameter = _diameter(path, comments)
+    times = np.unique(t)
+    cells = int(np.ceil(np.abs(x).max() / SPACING)) + 1
+    lattice = (np.arange(-cells, cells) + 0.5) * SPACING
+    surface = np.array([_surface(lattice, x[t == time], h[t == time]) for time in times])
+    ends = np.array([fronts(lattice, one, diameter) for one in surface])
+    return Observation(
+        description={"label": path.stem, "kernel_width": diameter},
+        times=times,
+        x=lattice,
+        z=np.zeros(0),
+        surface=surface,
+        series={"runout": 0.5 * (ends[:, 1] - ends[:, 0]), "height": surface.max(axis=1)},
+        snapshot_times=np.zeros(0),
+        snapshots={},
+    )
+
+
+def _surface(lattice: Array, x: Array, h: Array) -> Array:
+    order = np.argsort(x)
+    return np.interp(lattice, x[order], h[order], left=0.0, right=0.0)
+
+
+def _diameter(path: Path, comments: list[str]) -> float:
+    for line in comments:
+        if found := _DIAMETER.fullmatch(line):
+            try:
+                return float(found[1])
+            except ValueError:
+                raise InputError(f"{path}: grain_diameter '{found[1]}' is not a number") from None
+    raise InputError(f"{path}: a line '# grain_diameter = ...' [m] before the header is missing")
