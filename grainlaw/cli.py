@@ -9,6 +9,7 @@ import typer
 from grainlaw.calibrate_command import calibrate
 from grainlaw.check_command import check
 from grainlaw.compare_command import compare
+from grainlaw.dem_command import dem
 from grainlaw.element_command import element
 from grainlaw.materials_command import materials
 from grainlaw.new_law_command import new_law
@@ -34,6 +35,7 @@ app.command("compare")(compare)
 app.command("validate")(validate)
 app.command("new-law")(new_law)
 app.command("check")(check)
+app.add_typer(dem, name="dem")
 
 
 def _print_version(wanted: bool) -> None:

@@ -11,6 +11,7 @@ from documentation import DOCS, ROOT, page_script, run_page
 from pydantic import BaseModel
 
 from grainlaw.cli import app
+from grainlaw.reference.command_page import commands
 from grainlaw.reference.law_pages import own_laws
 from grainlaw.reference.pages import PARTS, regenerated_pages
 from grainlaw.reference.scene_tables import description, models_in, scene_tables
@@ -24,7 +25,7 @@ RUNNABLE_PAGES = [
     for page in (ROOT / "README.md", *PAGES)
     if page.name != "adding-a-law.md" and "\n```sh runnable\n" in page.read_text(encoding="utf-8")
 ]
-COMMANDS: dict[str, Any] = typer.main.get_command(app).commands
+COMMANDS: dict[str, Any] = commands(typer.main.get_command(app))
 
 
 def test_generated_parts_are_up_to_date():

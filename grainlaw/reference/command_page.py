@@ -12,10 +12,21 @@ def command_reference() -> str:
     """Every command with its arguments and options."""
     group: Any = typer.main.get_command(app)
     parts = [_table_of(group)]
-    for name, command in group.commands.items():
+    for name, command in commands(group).items():
         parts += [f"## grainlaw {name}\n", f"{command.help}\n", f"```text\n{_usage(name, command)}\n```\n"]
         parts.append(_table_of(command))
     return "\n".join(parts)
+
+
+def commands(group: Any) -> dict[str, Any]:
+    """Every command by its full name; those of a sub-group bear its name before theirs."""
+    found = {}
+    for name, command in group.commands.items():
+        if hasattr(command, "commands"):
+            found |= {f"{name} {inner}": one for inner, one in commands(command).items()}
+        else:
+            found[name] = command
+    return found
 
 
 def _usage(name: str, command: Any) -> str:

@@ -1,0 +1,79 @@
+"""`grainlaw dem`: our own runs of grains with LIGGGHTS and YADE."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+dem = typer.Typer(
+    help="Runs of grains with LIGGGHTS and YADE, from one description of each case.", no_args_is_help=True
+)
+
+
+@dem.command("list")
+def list_cases() -> None:
+    """List the cases: what each is, and the packings that each code runs by default."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    from validation.dem.catalogue import CASES
+
+    table = Table(box=box.SIMPLE_HEAD)
+    for heading in ("case", "what it is", "LIGGGHTS seeds", "YADE seeds"):
+        table.add_column(heading, no_wrap=heading == "case")
+    for case in CASES:
+        seeds = (" ".join(str(seed) for seed in case.seeds(code)) for code in ("liggghts", "yade"))
+        table.add_row(case.name, case.purpose, *seeds)
+    Console(width=120, markup=False).print(table)
+
+
+@dem.command("run")
+def run(
+    names: Annotated[list[str], typer.Argument(metavar="CASE...", help="Cases to run.", show_default=False)],
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the runs.")] = Path("runs/dem"),
+    code: Annotated[str | None, typer.Option("--code", help="Only liggghts or only yade.")] = None,
+    seed: Annotated[
+        list[int] | None, typer.Option("--seed", help="Packing instead of the default ones; repeatable.")
+    ] = None,
+    time_limit: Annotated[float, typer.Option("--time-limit", help="Longest time for one deck [s].")] = 7200.0,
+) -> None:
+    """Run cases that are not finished yet; what is finished in the folder is kept. Exit code 1 if a run fails."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from materials import InputError
+    from validation.dem.batch import case_named, perform_all
+    from validation.dem.programs import PROGRAMS
+    from validation.dem.runs import runs_of
+
+    if code is not None and code not in PROGRAMS:
+        raise InputError(f"--code {code}: allowed are {', '.join(PROGRAMS)}")
+    runs = [found for name in names for found in runs_of(case_named(name), code, tuple(seed or ()))]
+    console = Console(stderr=True)
+    columns = (MofNCompleteColumn(), BarColumn(), TimeElapsedColumn(), TextColumn("{task.fields[state]}"))
+    with Progress(*columns, console=console, disable=not console.is_terminal) as bar:
+        task = bar.add_task("", total=len(runs), state="")
+        outcomes = perform_all(
+            runs,
+            out,
+            time_limit,
+            lambda current, line: bar.update(task, completed=runs.index(current), state=f"{current.name}: {line}"),
+        )
+        bar.update(task, completed=len(runs))
+    for outcome in outcomes:
+        typer.echo(f"{outcome.run.name}: {outcome.text}")
+    if any(outcome.failed for outcome in outcomes):
+        raise typer.Exit(1)
+
+
+@dem.command("reduce")
+def reduce(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of runs, as `dem run --out` made it.")],
+    into: Annotated[Path, typer.Option("--into", metavar="DIR", help="Folder of the reference set.")],
+) -> None:
+    """Reduce finished runs to a reference set: an observation for each collapse, tables of shear and compression."""
+    from validation.dem.reduction import reduce_runs
+
+    for path in reduce_runs(folder, into):
+        typer.echo(str(path))

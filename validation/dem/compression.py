@@ -1,0 +1,92 @@
+"""Isotropic compression and unloading of a periodic cube: the deck and the pressure over the solid fraction."""
+
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+
+from materials.errors import SimulationError
+from mpm_core.output.atomic import write_text
+from validation.dem.cell import Reduced
+from validation.dem.description import Compression
+from validation.dem.liggghts import contact_values, data_file, decks, template_texts
+from validation.dem.packing import loose, mean_volume, random_radii
+
+Files = dict[str, str]
+TABLE = "compression.csv"
+COLUMNS = ("stage", "time", "solid_fraction", "pressure", "stress_xx", "stress_yy", "stress_zz")
+# The final solid fraction, roughly: it sets the number of grains in the cube.
+FINAL_FRACTION = 0.60
+# Rate at which the gas is closed [1/s], steps between two checks of the pressure, steps of rest before loading.
+FAST_RATE = 0.3
+EVERY = 200
+REST = 10000
+
+
+def files(case: Compression, seed: int) -> Files:
+    """Deck and data of the run."""
+    random = np.random.default_rng(seed)
+    number = round(FINAL_FRACTION * case.side**3 / mean_volume(case.grains))
+    side = (number * mean_volume(case.grains) / case.gas_fraction) ** (1.0 / 3.0)
+    space = np.array([[0.0, side]] * 3)
+    gas = loose(random_radii(case.grains, number, random), space, (True, True, True), random)
+    deck = (
+        decks()
+        .get_template("compression.in.j2")
+        .render(
+            case=case,
+            seed=seed,
+            skin=0.2 * case.grains.mean_diameter,
+            fast_rate=FAST_RATE,
+            every=EVERY,
+            rest=REST,
+            **contact_values(case.contact, case.contact.friction),
+        )
+    )
+    return {"grains.data": data_file(gas, None, case.grains.density, space), "deck.in": deck}
+
+
+def templates(code: str) -> Files:
+    """The texts of the templates that a run is made from."""
+    return template_texts("contact_law.in.j2", "compression.in.j2")
+
+
+def reduce(case: Compression, folder: Path) -> Reduced:
+    """Write pressure over solid fraction, loading and unloading, to `compression.csv`."""
+    log = (folder / "log.txt").read_text(encoding="utf-8", errors="replace")
+    if "FINISHED" not in log:
+        raise SimulationError(f"LIGGGHTS stopped before the end; see {folder / 'log.txt'}")
+    solid = _solid_volume(folder / "grains.data")
+    loading, _, unloading = log.partition("\nLOADING")[2].partition("\nUNLOADING")
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    last = 0
+    for stage, part in (("loading", loading), ("unloading", unloading)):
+        for step, _, volume, xx, yy, zz in _rows(part):
+            last, mean = int(step), (xx + yy + zz) / 3.0
+            values = (step * case.time_step, solid / volume, mean, xx, yy, zz)
+            writer.writerow((stage, *(f"{value:.7g}" for value in values)))
+    write_text(folder / TABLE, text.getvalue())
+    return Reduced(last, int(_rows(unloading)[0][1]), TABLE)
+
+
+def _rows(log: str) -> list[tuple[float, ...]]:
+    """Lines of the log that hold thermodynamic output: step, atoms, volume, three stresses (and the processor time).
+
+    Each `run` prints its first state again; only one of the two lines is kept.
+    """
+    rows: dict[float, tuple[float, ...]] = {}
+    for line in log.splitlines():
+        words = line.split()
+        if len(words) == 7 and words[0].isdigit() and words[1].isdigit():
+            values = tuple(float(word) for word in words[:6])
+            rows[values[0]] = values
+    return list(rows.values())
+
+
+def _solid_volume(data: Path) -> float:
+    lines = data.read_text(encoding="utf-8").partition("\nAtoms\n")[2].split("\n")
+    diameters = np.array([float(line.split()[2]) for line in lines if line.strip()])
+    return float(np.pi / 6.0 * np.sum(diameters**3))

@@ -1,0 +1,127 @@
+"""What a DEM case is: grains, contact law, geometry, seeds and output times, said once for both codes."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Positive = Annotated[float, Field(gt=0)]
+Floor = Literal["glued", "flat"]
+
+
+class Described(BaseModel):
+    """A part of a case: immutable, and refusing keys that it does not know."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Grains(Described):
+    """Spheres with diameters uniform between two values [m] and one density [kg/m3]."""
+
+    smallest_diameter: Positive = 0.012
+    largest_diameter: Positive = 0.018
+    density: Positive = 2450.0
+
+    @property
+    def mean_diameter(self) -> float:
+        """Number mean of the diameter [m]."""
+        return 0.5 * (self.smallest_diameter + self.largest_diameter)
+
+
+class Contact(Described):
+    """Hertz-Mindlin contact with tangential history and an elastic-plastic rolling resistance.
+
+    `rolling_arm` is the arm of the largest rolling moment over the normal force, in grain radii.
+    """
+
+    youngs_modulus: Positive = 1e8
+    poissons_ratio: Annotated[float, Field(ge=0, lt=0.5)] = 0.3
+    restitution: Annotated[float, Field(gt=0, le=1)] = 0.5
+    friction: Annotated[float, Field(ge=0)] = 0.7
+    rolling_arm: Annotated[float, Field(ge=0)] = 0.1
+
+
+class Case(Described):
+    """What every kind of case has; the seeds say which packings each code runs by default."""
+
+    name: str
+    purpose: str
+    grains: Grains = Grains()
+    contact: Contact = Contact()
+    time_step: Positive = 3e-5
+    liggghts_seeds: tuple[int, ...]
+    yade_seeds: tuple[int, ...] = ()
+
+    def seeds(self, code: str) -> tuple[int, ...]:
+        """The packings that a code runs by default."""
+        return self.liggghts_seeds if code == "liggghts" else self.yade_seeds
+
+
+class Collapse(Case):
+    """A column between two smooth walls that vanish at t = 0; plane in the mean, periodic over `depth`.
+
+    The packing settles under gravity with low friction, is cut at the initial height (grains whose centre lies above
+    are taken out), relaxes with the full friction between the walls, and is released to both sides.
+    """
+
+    kind: Literal["collapse"] = "collapse"
+    aspect_ratio: Positive
+    floor: Floor
+    half_width: Positive = 0.15
+    depth: Positive = 0.06
+    gravity: Positive = 9.81
+    end: Positive
+    output_interval: Positive = 0.05
+    relaxation: Positive = 0.15
+
+    @property
+    def initial_height(self) -> float:
+        """Height of the column [m]: aspect ratio times half width."""
+        return self.aspect_ratio * self.half_width
+
+    @property
+    def reach(self) -> float:
+        """Half length of the floor [m], well beyond the runout of the pile."""
+        return self.half_width * (2.0 + 3.5 * float(self.aspect_ratio) ** 0.75)
+
+
+class ShearStage(Described):
+    """One speed of the wall, and the strains of its transient and of its average.
+
+    The nominal inertial number is that of the wall's speed over the nominal height; the grains dilate and slip along the
+    wall, so that the bulk's own number, which is measured, is 0.7 of it in slow flow and a third in the fastest.
+    """
+
+    nominal_inertial_number: Positive
+    transient_strain: Positive
+    average_strain: Positive
+
+
+class PlaneShear(Case):
+    """Plane shear without gravity between two rough walls of glued grains, periodic along and across.
+
+    The lower wall stands; the upper one moves at a fixed speed and is free to rise, under a fixed normal stress.
+    """
+
+    kind: Literal["shear"] = "shear"
+    length: Positive = 0.18
+    depth: Positive = 0.09
+    height: Positive = 0.21
+    normal_stress: Positive = 5000.0
+    stages: tuple[ShearStage, ...]
+
+
+class Compression(Case):
+    """Isotropic compression of a periodic cube from a loose state to `largest_pressure`, and unloading.
+
+    The strain rate of the cube [1/s] is that of `loading_rate` once the pressure has passed `start_pressure`.
+    """
+
+    kind: Literal["compression"] = "compression"
+    side: Positive = 0.15
+    start_pressure: Positive = 200.0
+    largest_pressure: Positive = 2e5
+    loading_rate: Positive = 0.02
+    gas_fraction: Annotated[float, Field(gt=0, lt=0.4)] = 0.3
+
+
+AnyCase = Collapse | PlaneShear | Compression

@@ -1,0 +1,101 @@
+"""From raw runs to the reference set: observations of collapses, tables of shear and compression, provenance."""
+
+import csv
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+from materials import InputError
+from mpm_core.output.atomic import write_text
+from validation.dem.runs import RECORD
+from validation.grains.observation import write_observation
+from validation.grains.observe import observe_folder
+
+COLLAPSES, PROVENANCE = "collapse", "provenance.json"
+# Rows kept of a compression test: enough to fit slopes to, and a small file.
+COMPRESSION_ROWS = 60
+
+
+def reduce_runs(folder: Path, into: Path) -> list[Path]:
+    """Write the reference set of all finished runs below `folder`; return the files written.
+
+    Raises InputError if there is no finished run.
+    """
+    runs = [(path.parent, json.loads(path.read_text(encoding="utf-8"))) for path in sorted(folder.glob(f"*/*/{RECORD}"))]
+    if not runs:
+        raise InputError(f"{folder} holds no finished run: no CASE/CODE-seedN/{RECORD}")
+    (into / COLLAPSES).mkdir(parents=True, exist_ok=True)
+    written = []
+    for run, record in runs:
+        if record["kind"] == "collapse":
+            path = into / COLLAPSES / f"{record['case']}_{record['code']}_s{record['seed']}.h5"
+            write_observation(path, observe_folder(run))
+            written.append(path)
+    cells = {kind: [(run, record) for run, record in runs if record["kind"] == kind] for kind in ("shear", "compression")}
+    for kind, rows in (("shear", _shear_rows), ("compression", _compression_rows)):
+        if cells[kind]:
+            path = into / f"{kind}.csv"
+            write_text(path, _table([row for run, record in cells[kind] for row in rows(run, record)]))
+            written.append(path)
+    provenance = {f"{record['case']}/{run.name}": _provenance(record) for kind in cells.values() for run, record in kind}
+    write_text(into / PROVENANCE, json.dumps(provenance, indent=1) + "\n")
+    return [*written, into / PROVENANCE]
+
+
+def _shear_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
+    """The steady states of a shear run; I is the engineering rate's with p = sigma_zz."""
+    rows = []
+    for row in _read(run / record["table"]):
+        value = {name: float(text) for name, text in row.items()}
+        rows.append(
+            {
+                "code": record["code"],
+                "seed": record["seed"],
+                "I": value["inertial_number"],
+                "mu": value["mu"],
+                "se_mu": value["mu_error"],
+                "phi": value["solid_fraction"],
+                "se_phi": value["solid_fraction_error"],
+                "tau_over_p3": round(value["shear_stress"] / value["pressure"], 6),
+                "szz": value["normal_stress"],
+                "p3": value["pressure"],
+                "sxx": value["stress_xx"],
+                "syy": value["stress_yy"],
+                "kin_frac": value["kinetic_share"],
+                "blocks": int(value["blocks"]),
+            }
+        )
+    return sorted(rows, key=lambda row: row["I"])
+
+
+def _compression_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
+    """Solid fraction and mean pressure, a few dozen of each stage, above the pressure at which loading starts."""
+    start = record["description"]["start_pressure"]
+    rows = [row for row in _read(run / record["table"]) if float(row["pressure"]) > start]
+    chosen = []
+    for stage in ("loading", "unloading"):
+        part = [row for row in rows if row["stage"] == stage]
+        step = max(1, len(part) // COMPRESSION_ROWS)
+        chosen += part[::step]
+    return [
+        {"code": record["code"], "seed": record["seed"], "stage": row["stage"], "phi": row["solid_fraction"], "p": row["pressure"]}
+        for row in chosen
+    ]
+
+
+def _provenance(record: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in record.items() if name not in ("frames", "table", "status")}
+
+
+def _read(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def _table(rows: list[dict[str, Any]]) -> str:
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()

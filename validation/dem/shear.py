@@ -1,0 +1,187 @@
+"""Plane shear at constant normal stress: the deck, and steady averages with standard errors by blocks."""
+
+import csv
+import io
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mpm_core.output.atomic import write_text
+from validation.dem.cell import Reduced
+from validation.dem.description import PlaneShear, ShearStage
+from validation.dem.liggghts import contact_values, data_file, decks, template_texts
+from validation.dem.packing import Array, Packing, loose, mean_volume, random_radii
+
+Files = dict[str, str]
+TABLE = "shear.csv"
+LOOSE_FRACTION = 0.30
+# Solid fraction at which the wall stops closing in and is pressed on; below that of any dense flow but the fastest.
+CLOSED_FRACTION = 0.50
+CLOSING_SPEED = 0.3
+BLOCKS = 12
+SAMPLES_PER_BLOCK = 100
+# Share of the height that counts as the bulk.
+BULK = (0.3, 0.7)
+COLUMNS = (
+    "inertial_number",
+    "shear_rate",
+    "mu",
+    "mu_error",
+    "solid_fraction",
+    "solid_fraction_error",
+    "normal_stress",
+    "pressure",
+    "shear_stress",
+    "stress_xx",
+    "stress_yy",
+    "kinetic_share",
+    "normal_stress_error",
+    "height",
+    "blocks",
+)
+
+
+def files(case: PlaneShear, seed: int) -> Files:
+    """Deck and data of the run of all inertial numbers, the fastest first."""
+    grains = case.grains
+    random = np.random.default_rng(seed)
+    area = case.length * case.depth
+    number = round(0.58 * area * case.height / mean_volume(grains))
+    gap = number * mean_volume(grains) / area / LOOSE_FRACTION
+    space = np.array([[0.0, case.length], [0.0, case.depth], [0.0, gap]])
+    gas = loose(random_radii(grains, number, random), space, (True, True, False), random)
+    mean = grains.mean_diameter
+    lower = rough_wall(case, random)
+    upper = Packing(rough_wall(case, random).centres + [0.0, 0.0, gap], lower.radii)
+    walls = Packing(np.vstack([lower.centres - [0.0, 0.0, mean], upper.centres + [0.0, 0.0, mean]]), np.tile(lower.radii, 2))
+    box = np.array([[0.0, case.length], [0.0, case.depth], [-3.0 * mean, gap + 3.0 * mean]])
+    closing = gap * (1.0 - LOOSE_FRACTION / CLOSED_FRACTION)
+    deck = (
+        decks()
+        .get_template("shear.in.j2")
+        .render(
+            case=case,
+            seed=seed,
+            skin=0.2 * mean,
+            middle=0.5 * gap,
+            closing_speed=CLOSING_SPEED,
+            closing_steps=round(closing / CLOSING_SPEED / case.time_step),
+            force_per_grain=case.normal_stress * area / len(upper),
+            bin=0.5 * mean,
+            stages=[_stage(case, stage) for stage in case.stages],
+            **contact_values(case.contact, case.contact.friction),
+        )
+    )
+    return {"grains.data": data_file(gas, walls, grains.density, box), "deck.in": deck}
+
+
+def rough_wall(case: PlaneShear, random: np.random.Generator) -> Packing:
+    """Equal grains about z = 0 in rows so close that no mobile grain fits between them, rough by random heights."""
+    mean = case.grains.mean_diameter
+    rows, columns = (int(side / (0.85 * mean)) for side in (case.length, case.depth))
+    x, y = np.meshgrid(np.arange(rows) * case.length / rows, np.arange(columns) * case.depth / columns, indexing="ij")
+    z = random.uniform(-0.25, 0.25, x.size) * mean
+    return Packing(np.column_stack([x.ravel(), y.ravel(), z]), np.full(x.size, 0.5 * mean))
+
+
+def templates(code: str) -> Files:
+    """The texts of the templates that a run is made from."""
+    return template_texts("contact_law.in.j2", "shear.in.j2")
+
+
+def rate(case: PlaneShear, stage: ShearStage) -> float:
+    """Nominal engineering shear rate [1/s] of a stage: I sqrt(sigma_zz/rho_p)/d."""
+    return (
+        stage.nominal_inertial_number * math.sqrt(case.normal_stress / case.grains.density) / case.grains.mean_diameter
+    )
+
+
+def reduce(case: PlaneShear, folder: Path) -> Reduced:
+    """Write the steady averages of every stage to `shear.csv`."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    grains = steps = 0
+    for index, _ in enumerate(case.stages):
+        blocks = _read_profiles(folder / f"profile_{index}.txt")
+        heights = np.loadtxt(folder / f"height_{index}.txt", comments="#", ndmin=2)
+        writer.writerow(_steady(case, [table for _, table in blocks], heights[:, 1]))
+        steps = blocks[-1][0]
+        grains = round(float(blocks[-1][1][:, 2].sum()))
+    write_text(folder / TABLE, text.getvalue())
+    return Reduced(steps, grains, TABLE)
+
+
+def _stage(case: PlaneShear, stage: ShearStage) -> dict[str, Any]:
+    strain_per_step = rate(case, stage) * case.time_step
+    every = max(1, round(stage.average_strain / strain_per_step / BLOCKS / SAMPLES_PER_BLOCK))
+    block = every * SAMPLES_PER_BLOCK
+    return {
+        "nominal_inertial_number": stage.nominal_inertial_number,
+        "speed": rate(case, stage) * case.height,
+        "transient_steps": round(stage.transient_strain / strain_per_step),
+        "every": every,
+        "repeat": SAMPLES_PER_BLOCK,
+        "block": block,
+        "average_steps": block * (BLOCKS + 1),
+    }
+
+
+def _read_profiles(path: Path) -> list[tuple[int, Array]]:
+    """The blocks of a `fix ave/spatial` file: (step, rows of bin, z, count, values)."""
+    lines = [line.split() for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+    blocks, at = [], 0
+    while at < len(lines):
+        step, rows = int(lines[at][0]), int(lines[at][1])
+        blocks.append((step, np.array(lines[at + 1 : at + 1 + rows], dtype=float)))
+        at += rows + 1
+    return blocks
+
+
+def _steady(case: PlaneShear, blocks: list[Array], tops: Array) -> dict[str, float]:
+    """Averages over the bulk of a stage's blocks, with standard errors from the scatter between blocks."""
+    rows = np.array([_bulk(case, block, top) for block, top in zip(blocks, tops, strict=False)])
+    mean = rows.mean(axis=0)
+    rate_, phi, xx, yy, zz, xz, kinetic = mean
+    mu_blocks = rows[:, 5] / rows[:, 4]
+    root = math.sqrt(len(rows))
+    error = rows.std(axis=0, ddof=1) / root
+    pressure = (xx + yy + zz) / 3.0
+    inertial = rate_ * case.grains.mean_diameter / math.sqrt(zz / case.grains.density)
+    values = (
+        inertial,
+        rate_,
+        xz / zz,
+        mu_blocks.std(ddof=1) / root,
+        phi,
+        error[1],
+        zz,
+        pressure,
+        xz,
+        xx,
+        yy,
+        kinetic,
+        error[4],
+        float(np.mean(tops)),
+        len(rows),
+    )
+    return dict(zip(COLUMNS, (float(f"{value:.6g}") for value in values), strict=True))
+
+
+def _bulk(case: PlaneShear, block: Array, top: float) -> tuple[float, ...]:
+    """Rate, solid fraction, stresses xx, yy, zz, xz (compression and drag positive), kinetic share of zz in a block."""
+    height = top - 0.75 * case.grains.mean_diameter
+    inside = (block[:, 1] > BULK[0] * height) & (block[:, 1] < BULK[1] * height)
+    z, count = block[inside, 1], block[inside, 2]
+    vx, vz, density, sxx, syy, szz, sxz, mxx, myy, mzz, mxz = block[inside, 3:14].T
+    width = block[1, 1] - block[0, 1]
+    per_volume = count / (case.length * case.depth * width)
+    mass = density / per_volume
+    kinetic = [mxx - mass * vx * vx, myy, mzz - mass * vz * vz, mxz - mass * vx * vz]
+    contact = [-sxx, -syy, -szz, -sxz]
+    total = [float(np.mean((c + k) * per_volume)) for c, k in zip(contact, kinetic, strict=True)]
+    slope = float(np.polyfit(z, vx, 1, w=np.sqrt(count))[0])
+    share = float(np.mean(kinetic[2] * per_volume)) / total[2]
+    return (slope, float(np.mean(density)) / case.grains.density, total[0], total[1], total[2], abs(total[3]), share)
