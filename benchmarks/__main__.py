@@ -1,7 +1,7 @@
 """`python -m benchmarks`: measure everything in one run on one machine, print it and store it."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,6 +9,8 @@ from typing import Annotated, Any
 import typer
 
 from benchmarks.columns import cell_size_for, moving_column
+from benchmarks.forecasts import QUICK_SCENES, forecasts
+from benchmarks.forecasts import SCENES as FORECAST_SCENES
 from benchmarks.machine import machine_description
 from benchmarks.memory import memory_per_point
 from benchmarks.passes import pass_times
@@ -18,6 +20,7 @@ from benchmarks.roofline import Roofline, measured_roofline
 from benchmarks.sizes import cost_over_domain, cost_over_size
 from benchmarks.tables import (
     domain_table,
+    forecast_table,
     machine_table,
     memory_table,
     pass_table,
@@ -37,6 +40,7 @@ class Part(StrEnum):
     SIZES = "sizes"
     DOMAIN = "domain"
     MEMORY = "memory"
+    PLANS = "plans"
 
 
 @dataclass(frozen=True)
@@ -49,10 +53,27 @@ class Effort:
     rounds: int
     pass_steps: int
     working_sets: tuple[int, ...]
+    scenes: Mapping[str, Mapping[str, Any]]
 
 
-FULL = Effort(0.00625, 1.5, (1e4, 1e5, 4e5, 1.6e6, 4e6), 3, 300, (2**18, 2**20, 2**22, 2**24, 2**26, 3 * 2**28))
-QUICK = Effort(0.05, 0.02, (1e3, 4e3), 1, 20, (2**18, 2**24))
+FULL = Effort(
+    cell_size=0.00625,
+    end=1.5,
+    sizes=(1e4, 1e5, 4e5, 1.6e6, 4e6),
+    rounds=3,
+    pass_steps=300,
+    working_sets=(2**18, 2**20, 2**22, 2**24, 2**26, 3 * 2**28),
+    scenes=FORECAST_SCENES,
+)
+QUICK = Effort(
+    cell_size=0.05,
+    end=0.02,
+    sizes=(1e3, 4e3),
+    rounds=1,
+    pass_steps=20,
+    working_sets=(2**18, 2**24),
+    scenes=QUICK_SCENES,
+)
 
 
 @dataclass
@@ -81,14 +102,7 @@ def main(
 ) -> None:
     """Time the library: pass by pass against the roofline, against the yardstick, over size, domain and memory."""
     chosen = QUICK if quick else FULL
-    effort = Effort(
-        cell_size or chosen.cell_size,
-        end or chosen.end,
-        chosen.sizes,
-        chosen.rounds,
-        chosen.pass_steps,
-        chosen.working_sets,
-    )
+    effort = replace(chosen, cell_size=cell_size or chosen.cell_size, end=end or chosen.end)
     materials = material or list(SCENES)
     record = Record()
     machine = machine_description()
@@ -132,6 +146,11 @@ def _memory(record: Record, materials: list[str], effort: Effort, roofline: Roof
     record.add("memory", found, memory_table(found))
 
 
+def _plans(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+    found = forecasts(effort.scenes)
+    record.add("plans", found, forecast_table(found))
+
+
 def _threads() -> list[int]:
     return [1, 2] if usable_threads(None) > 1 else [1]
 
@@ -142,6 +161,7 @@ MEASURES: dict[Part, Callable[[Record, list[str], Effort, Roofline], None]] = {
     Part.SIZES: _sizes,
     Part.DOMAIN: _domain,
     Part.MEMORY: _memory,
+    Part.PLANS: _plans,
 }
 
 if __name__ == "__main__":

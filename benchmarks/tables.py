@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
+from benchmarks.forecasts import Forecast
 from benchmarks.memory import Memory
 from benchmarks.passes import PassTime
 from benchmarks.race import Result
@@ -118,6 +119,30 @@ def memory_table(found: Mapping[str, Memory]) -> Table:
     )
     headings = ("law", "points", "resident [MB]", "bytes per point, all included", "bytes per further point")
     return Table("Memory", headings, rows)
+
+
+def forecast_table(found: Sequence[Forecast]) -> Table:
+    """Plans beside runs."""
+    rows = tuple(
+        (
+            one.scene,
+            f"{one.points:,}",
+            f"{one.predicted_steps:,}",
+            f"{one.steps:,}",
+            f"{one.predicted_steps / one.steps:.2f}",
+            f"{one.predicted_time:.1f}",
+            f"{one.time:.1f}",
+            f"{one.predicted_time / one.time:.2f}",
+            f"{one.cpu_time:.1f}",
+            f"{one.predicted_time / one.cpu_time:.2f}",
+        )
+        for one in found
+    )
+    headings = (
+        *("scene", "points", "steps planned", "steps taken", "ratio"),
+        *("time planned [s]", "wall time taken [s]", "ratio", "processor time taken [s]", "ratio"),
+    )
+    return Table("Plans and runs", headings, rows)
 
 
 def _range(values: Spread, factor: float, digits: str) -> str:

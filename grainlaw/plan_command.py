@@ -31,15 +31,17 @@ def plan(
         "points": f"{planned.points:,}",
         "cells of the domain": f"{planned.cells:,}",
         "nodes in reach of the material": f"{planned.nodes_in_reach:,}",
-        "memory": f"{planned.memory_bytes / 1e6:.1f} MB ({planned.bytes_per_point:.0f} bytes per point)",
+        "memory": f"{planned.memory_bytes / 1e6:.0f} MB, all included; {planned.bytes_per_point:.0f} bytes per point "
+        "in arrays",
         "basis, transfer": f"{scene.transfer.basis}, {scene.transfer.scheme}",
-        "time step": f"{planned.step:.3g} s (stable: {planned.stable_step:.3g} s)",
+        "time step": f"{planned.step:.3g} s at the start (stable: {planned.stable_step:.3g} s)",
         "steps": f"about {planned.steps:,}",
         "rate": f"{planned.points / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "
         f"{planned.threads} threads",
-        "expected duration": f"{planned.wall_time:.0f} s at the sound speed of the start",
+        "expected duration": f"{planned.wall_time:.1f} s, of which output {planned.output_time:.1f} s",
         "frames": f"{planned.frames}",
         "fields of a frame": ", ".join(planned.fields),
+        "saved": "; ".join(planned.savings),
     }
     for name, value in rows.items():
         table.add_row(name, value)

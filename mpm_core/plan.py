@@ -1,24 +1,33 @@
 """What a scene will use and cost, before it is run."""
 
 import math
+import resource
+import statistics
 import time
 from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
-from mpm_core.grid import COMPONENTS
-from mpm_core.recorder import FRAMES_BY_DEFAULT
+from mpm_core.output.checkpoint import Clock
+from mpm_core.recorder import FRAMES_BY_DEFAULT, HISTORY_ROWS_BY_DEFAULT, Recorder
+from mpm_core.rehearsal import FIRST_STEPS, expected_speed, rehearsals
 from mpm_core.run import built_simulation
 from mpm_core.scene import Scene
 from mpm_core.simulation import Simulation
 
-REHEARSAL_STEPS = 40
+TIMED_STEPS = 40
 
 
 @dataclass(frozen=True)
 class Plan:
     """What a run of a scene takes.
 
-    steps and wall_time hold if the material keeps the sound speed of the start; a law that stiffens under impact takes
-    more steps.
+    bytes_per_point    of the arrays that hold the points
+    memory_bytes       greatest memory of this process while it built the scene and made the first steps, all included
+    step, stable_step  at the start [s]
+    steps              with the signal speeds of rehearsals on coarse grids
+    wall_time          of all steps and all output [s], without compilation
+    savings            what this scene need not do or keep
     """
 
     laws: list[str]
@@ -31,47 +40,97 @@ class Plan:
     stable_step: float
     steps: int
     seconds_per_step: float
+    output_time: float
     wall_time: float
     frames: int
     fields: list[str]
+    savings: list[str]
     threads: int
 
 
 def plan(scene: Scene, threads: int = 1) -> Plan:
-    """Build the scene, rehearse a few steps and extrapolate. Raises InputError for a scene that cannot be run."""
+    """Build the scene, time some steps, rehearse it on coarse grids. Raises InputError for one that cannot be run."""
+    started = time.perf_counter()
     simulation = built_simulation(scene, threads)
+    build_time = time.perf_counter() - started - simulation.build_time
     stable = simulation.stable_step()
     step = scene.time.step or scene.time.safety * stable
     points = sum(body.count for body in simulation.bodies)
-    point_bytes = sum(body.points.nbytes + body.ids.nbytes for body in simulation.bodies)
-    window = simulation.window
-    nodes = (window.last_x - window.first_x + 1) * (window.last_y - window.first_y + 1)
-    seconds = _seconds_per_step(simulation, min(step, stable))
-    steps = int(scene.time.end / step) + 1
     interval = scene.output.interval or scene.time.end / FRAMES_BY_DEFAULT
+    stops = math.ceil(scene.time.end / interval - 1e-9)
+    output_time = _output_time(simulation, stops + 1)
+    seconds = _seconds_per_step(simulation, min(step, stable))
+    memory_bytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    played = rehearsals(scene, points, threads)
+    seconds += played[-1].growth * points
+    steps = _steps(scene, expected_speed(played, scene.grid.cell_size), stops)
     return Plan(
         laws=list(dict.fromkeys(body.law.name for body in simulation.bodies)),
         points=points,
         cells=scene.grid.cells[0] * scene.grid.cells[1],
-        nodes_in_reach=nodes,
-        bytes_per_point=point_bytes / points,
-        memory_bytes=point_bytes + 8 * COMPONENTS * nodes,
+        nodes_in_reach=_nodes_in_reach(simulation),
+        bytes_per_point=sum(body.points.nbytes + body.ids.nbytes for body in simulation.bodies) / points,
+        memory_bytes=memory_bytes,
         step=step,
         stable_step=stable,
         steps=steps,
         seconds_per_step=seconds,
-        wall_time=steps * seconds,
-        frames=math.ceil(scene.time.end / interval - 1e-9) + 1 if scene.output.vtu or scene.output.vtkhdf else 0,
+        output_time=output_time,
+        wall_time=build_time + steps * seconds + output_time,
+        frames=stops + 1 if scene.output.vtu or scene.output.vtkhdf else 0,
         fields=simulation.fields,
+        savings=_savings(simulation),
         threads=threads,
     )
 
 
+def _steps(scene: Scene, signal_speed: float, stops: int) -> int:
+    """Number of steps; on the way to each of the stops, half a step is lost on average."""
+    if scene.time.step is not None:
+        return math.ceil(scene.time.end / scene.time.step)
+    steps = scene.time.end * signal_speed / (scene.time.safety * scene.grid.cell_size)
+    return round(steps + 0.5 * stops)
+
+
+def _nodes_in_reach(simulation: Simulation) -> int:
+    window = simulation.window
+    return (window.last_x - window.first_x + 1) * (window.last_y - window.first_y + 1)
+
+
+def _savings(simulation: Simulation) -> list[str]:
+    nodes = simulation.grid.shape[0] * simulation.grid.shape[1]
+    found = [f"grid: {1.0 - _nodes_in_reach(simulation) / nodes:.0%} of the nodes are out of reach at the start"]
+    if "shear_strain" not in simulation.fields:
+        found.append("shear strain: not accumulated, as no frame holds it")
+    return found
+
+
 def _seconds_per_step(simulation: Simulation, dt: float) -> float:
-    # The first steps compile or load the kernels and sort the points.
-    for _ in range(2):
+    """Median of some steps, after those that compile or load the kernels."""
+    durations = []
+    for _ in range(FIRST_STEPS + TIMED_STEPS):
+        started = time.perf_counter()
         simulation.step(dt)
+        durations.append(time.perf_counter() - started)
+    return statistics.median(durations[FIRST_STEPS:])
+
+
+def _output_time(simulation: Simulation, frames: int) -> float:
+    """Wall time [s] of all frames with their checkpoints, and of all rows of the history."""
+    output, end = simulation.scene.output, simulation.scene.time.end
+    rows = end / (output.history_interval or end / HISTORY_ROWS_BY_DEFAULT)
+    with TemporaryDirectory() as folder:
+        recorder = Recorder(Path(folder), simulation, Clock())
+        durations = [_duration_of_record(recorder) for _ in range(2)]
+        recorder.close()
     started = time.perf_counter()
-    for _ in range(REHEARSAL_STEPS):
-        simulation.step(dt)
-    return (time.perf_counter() - started) / REHEARSAL_STEPS
+    recorder.shape()
+    # The first record imports libraries, as the first one of the run does.
+    return durations[0] + frames * durations[1] + rows * (time.perf_counter() - started)
+
+
+def _duration_of_record(recorder: Recorder) -> float:
+    recorder.clock = Clock()
+    started = time.perf_counter()
+    recorder.record(0.0, 0.0)
+    return time.perf_counter() - started

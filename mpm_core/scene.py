@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError,
 from materials import InputError, get_material
 from materials.errors import nearest_name
 from materials.law import Law
+from mpm_core.accuracy import with_settings_for_accuracy
 from mpm_core.scene_errors import described
 from mpm_core.scene_file import read_content
 from mpm_core.shapes import AnyShape, Corner
@@ -26,7 +27,7 @@ class Section(BaseModel):
 class GridSection(Section):
     """The background grid."""
 
-    cell_size: float = Field(gt=0, description="edge of a square cell [m]")
+    cell_size: float = Field(gt=0, description="edge of a square cell [m]; may be left to `accuracy`")
     lower: Corner = Field(default=(0.0, 0.0), description="lower left corner of the domain [m]")
     upper: Corner = Field(description="upper right corner of the domain [m]; a whole number of cells from `lower`")
 
@@ -175,6 +176,11 @@ class Scene(Section):
     """A complete scene."""
 
     title: str = Field(default="", description="one line for reports")
+    accuracy: Literal["10%", "3%"] | None = Field(
+        default=None,
+        description="sets grid.cell_size and time.safety where the scene does not, to what kept runout, height and "
+        "centre of mass of column collapses within this of a finer grid",
+    )
     gravity: Corner = Field(default=(0.0, -9.81), description="gravity vector [m/s2]")
     grid: GridSection
     time: TimeSection
@@ -191,6 +197,11 @@ class Scene(Section):
     def source(self) -> str:
         """The file that the scene was read from, for messages."""
         return self._source
+
+    @model_validator(mode="before")
+    @classmethod
+    def _settings_for_accuracy(cls, content: Any) -> Any:
+        return with_settings_for_accuracy(content)
 
     @model_validator(mode="after")
     def _periodic_axes_are_wide_enough(self) -> "Scene":

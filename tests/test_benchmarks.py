@@ -25,7 +25,7 @@ def test_one_command_measures_prints_and_stores_everything(tmp_path):
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
     numbers = json.loads((tmp_path / "benchmark.json").read_text())
     page = (tmp_path / "benchmark.md").read_text()
-    assert set(numbers) == {"machine", "roofline", "passes", "yardstick", "sizes", "domain", "memory"}
+    assert set(numbers) == {"machine", "roofline", "passes", "yardstick", "sizes", "domain", "memory", "plans"}
     for tables in numbers.values():
         for title in tables:
             assert title in done.stdout

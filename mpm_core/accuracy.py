@@ -1,0 +1,99 @@
+"""Settings for a stated accuracy: cell size and safety factor that a scene need not choose itself.
+
+`grainlaw validate speed_error` measured how runout, height of the pile and height of the centre of mass of column
+collapses differ from those on a finer grid, over cell size, step, transfer and shape functions. Here stands, for each
+law and accuracy, the cheapest setting that kept to it, on columns on which it was chosen as well as on one on which it
+was not. Where no grid did, there is no entry: a scene that asks for it is refused.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from mpm_core.shapes import AnyShape
+
+# How much finer than wanted cells may become to divide the domain.
+FINEST_SHARE = 0.5
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Cells across the narrowest body, and fraction of the stable step."""
+
+    cells_across: int
+    safety: float
+
+
+PRESETS: dict[str, dict[str, Preset]] = {
+    "mu_i_lc": {"10%": Preset(12, 0.4)},
+}
+ACCURACIES = ("10%", "3%")
+
+
+def with_settings_for_accuracy(content: Any) -> Any:
+    """The tables of a scene with `grid.cell_size` and `time.safety` filled in where `accuracy` asks for it.
+
+    Raises ValueError for an accuracy that was not reached with a law of the scene, and where no cell size divides the
+    domain. What is not well-formed is left to the validation of the scene.
+    """
+    if not isinstance(content, Mapping) or content.get("accuracy") not in ACCURACIES:
+        return content
+    grid, time = content.get("grid"), content.get("time")
+    width = _narrowest_width(content.get("body"))
+    if not isinstance(grid, Mapping) or not isinstance(time, Mapping) or width is None:
+        return content
+    preset = _strictest(content["accuracy"], _laws(content))
+    cell_size = grid.get("cell_size") or _cell_size(grid, width / preset.cells_across)
+    return {
+        **content,
+        "grid": {**grid, "cell_size": cell_size},
+        "time": {"safety": preset.safety, **time},
+    }
+
+
+def _laws(content: Mapping[str, Any]) -> list[str]:
+    """Names of the laws of a scene's materials."""
+    materials = content.get("material")
+    if not isinstance(materials, Mapping):
+        return []
+    return [str(table.get("law", name)) for name, table in materials.items() if isinstance(table, Mapping)]
+
+
+def _strictest(accuracy: str, laws: Iterable[str]) -> Preset:
+    """The preset that serves all laws."""
+    presets = []
+    for law in laws:
+        reached = PRESETS.get(law, {})
+        if accuracy not in reached:
+            allowed = f"allowed: {', '.join(reached)}" if reached else "state grid.cell_size and time.safety instead"
+            raise ValueError(f"accuracy = '{accuracy}' was not reached on any grid with law '{law}'; {allowed}")
+        presets.append(reached[accuracy])
+    return Preset(max(found.cells_across for found in presets), min(found.safety for found in presets))
+
+
+def _narrowest_width(bodies: Any) -> float | None:
+    """The smallest edge of the bodies' bounding boxes [m]; None if a shape is not well-formed."""
+    try:
+        shapes = [TypeAdapter(AnyShape).validate_python(body["shape"]) for body in bodies]
+        corners = [shape.bounds() for shape in shapes]
+        return min(float(upper[axis] - lower[axis]) for lower, upper in corners for axis in (0, 1))
+    except (ValidationError, KeyError, TypeError, ValueError):
+        return None
+
+
+def _cell_size(grid: Mapping[str, Any], largest: float) -> float:
+    """The largest cell size [m] up to `largest` of which both edges of the domain are whole multiples."""
+    lower, upper = grid.get("lower", (0.0, 0.0)), grid["upper"]
+    across, up = (float(upper[axis] - lower[axis]) for axis in (0, 1))
+    fewest = math.ceil(across / largest * (1.0 - 1e-9))
+    for count in range(fewest, math.floor(fewest / FINEST_SHARE) + 1):
+        rows = up * count / across
+        if abs(rows - round(rows)) < 1e-9 * rows and round(rows) > 0:
+            return across / count
+    raise ValueError(
+        f"accuracy: no cells between {FINEST_SHARE * largest:g} and {largest:g} m divide the domain of {across:g} m "
+        f"by {up:g} m; change grid.upper or state grid.cell_size"
+    )

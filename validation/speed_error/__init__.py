@@ -1,0 +1,1 @@
+"""What accuracy costs: one column collapse with many settings, errors against a finer one over processor time."""

@@ -1,0 +1,111 @@
+"""The settings that are compared, and what one run with them gives."""
+
+import time
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from mpm_core.columns import X, Y
+from mpm_core.run import next_step
+from mpm_core.simulation import Simulation
+from mpm_core.sources import CORE_MARK
+from validation.collapses import collapse
+
+END = 1.5
+# Before the clock starts: kernels are compiled or loaded.
+WARM_UP_STEPS = 2
+
+# Lower left and upper right corner of the column [m]: the paper's, and a low one on which no default was chosen.
+COLUMNS: dict[str, tuple[list[float], list[float]]] = {
+    "paper": ([1.45, 0.0], [1.75, 0.9]),
+    "low": ([1.3, 0.0], [1.9, 0.4]),
+}
+# The share of the mass that lies below the height, and between the fronts.
+MASS_SHARE = 0.98
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One run: material, column, and what may be chosen for the sake of speed; `cell_size` in m."""
+
+    material: str
+    column: str
+    cell_size: float
+    safety: float = 0.4
+    scheme: str = "affine_flip"
+    basis: str = "quadratic"
+
+    @property
+    def key(self) -> str:
+        """A name for files."""
+        words = (self.material, self.column, f"{self.cell_size:.6g}", f"{self.safety:g}", self.scheme, self.basis)
+        return "-".join("".join(c for c in word if c.isalnum() or c in "._") for word in words)
+
+    @property
+    def changes(self) -> dict[str, Any]:
+        """What the shipped scene is changed by."""
+        lower, upper = COLUMNS[self.column]
+        return {
+            "body.0.shape": {"kind": "rectangle", "lower": lower, "upper": upper},
+            "time.safety": self.safety,
+            "transfer.scheme": self.scheme,
+            "transfer.basis": self.basis,
+        }
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run led to and cost.
+
+    runout   half of the width between the fronts, beyond each of which lies 1 % of the mass [m]
+    height   the level below which lies 98 % of the mass [m]; unlike the summary's it does not depend on the cell
+    center   height of the centre of mass [m]
+    """
+
+    points: int
+    steps: int
+    cpu_time: float
+    runout: float
+    height: float
+    center: float
+    mark: str
+
+    @property
+    def observables(self) -> dict[str, float]:
+        """The lengths that errors are counted of."""
+        return {"runout": self.runout, "height": self.height, "center": self.center}
+
+
+def measured_outcome(setting: Setting) -> Outcome:
+    """Run a collapse on one thread. Raises SimulationError where it breaks down."""
+    simulation = collapse(setting.material, setting.cell_size, setting.changes)
+    _make_steps(simulation, WARM_UP_STEPS)
+    started = time.process_time()
+    _make_steps(simulation, None)
+    cpu_time = time.process_time() - started
+    body = simulation.bodies[0]
+    x, y = np.sort(body.points[X]), np.sort(body.points[Y])
+    beyond = round(0.5 * (1.0 - MASS_SHARE) * body.count)
+    return Outcome(
+        points=body.count,
+        steps=simulation.steps,
+        cpu_time=cpu_time,
+        runout=0.5 * float(x[-1 - beyond] - x[beyond]),
+        height=float(y[-1 - 2 * beyond]),
+        center=float(y.mean()),
+        mark=CORE_MARK,
+    )
+
+
+def _make_steps(simulation: Simulation, count: int | None) -> None:
+    """Take so many steps, or all to the end."""
+    while simulation.time < END and (count is None or simulation.steps < count):
+        dt, arrival = next_step(simulation, END)
+        simulation.step(dt)
+        simulation.time = simulation.time if arrival is None else arrival
+
+
+def as_dict(setting: Setting, outcome: Outcome) -> dict[str, Any]:
+    """Both, for JSON."""
+    return {"setting": asdict(setting), "outcome": asdict(outcome)}
