@@ -110,8 +110,8 @@ class Simulation:
         self._take_reports(dt)
 
     def stable_step(self) -> float:
-        """The largest stable step [s] at the present state: a cell over the fastest signal."""
-        return self.grid.cell_size / self.signal_speed
+        """The largest stable step [s] at the present state: a cell over the fastest signal; infinite without any."""
+        return self.grid.cell_size / self.signal_speed if self.signal_speed > 0.0 else math.inf
 
     def _memory(self, dt: float) -> float:
         """The share of the unresolved velocity that outlives a step."""

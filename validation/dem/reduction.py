@@ -22,7 +22,9 @@ def reduce_runs(folder: Path, into: Path) -> list[Path]:
 
     Raises InputError if there is no finished run.
     """
-    runs = [(path.parent, json.loads(path.read_text(encoding="utf-8"))) for path in sorted(folder.glob(f"*/*/{RECORD}"))]
+    runs = [
+        (path.parent, json.loads(path.read_text(encoding="utf-8"))) for path in sorted(folder.glob(f"*/*/{RECORD}"))
+    ]
     if not runs:
         raise InputError(f"{folder} holds no finished run: no CASE/CODE-seedN/{RECORD}")
     (into / COLLAPSES).mkdir(parents=True, exist_ok=True)
@@ -32,13 +34,17 @@ def reduce_runs(folder: Path, into: Path) -> list[Path]:
             path = into / COLLAPSES / f"{record['case']}_{record['code']}_s{record['seed']}.h5"
             write_observation(path, observe_folder(run))
             written.append(path)
-    cells = {kind: [(run, record) for run, record in runs if record["kind"] == kind] for kind in ("shear", "compression")}
+    cells = {
+        kind: [(run, record) for run, record in runs if record["kind"] == kind] for kind in ("shear", "compression")
+    }
     for kind, rows in (("shear", _shear_rows), ("compression", _compression_rows)):
         if cells[kind]:
             path = into / f"{kind}.csv"
             write_text(path, _table([row for run, record in cells[kind] for row in rows(run, record)]))
             written.append(path)
-    provenance = {f"{record['case']}/{run.name}": _provenance(record) for kind in cells.values() for run, record in kind}
+    provenance = {
+        f"{record['case']}/{run.name}": _provenance(record) for kind in cells.values() for run, record in kind
+    }
     write_text(into / PROVENANCE, json.dumps(provenance, indent=1) + "\n")
     return [*written, into / PROVENANCE]
 
@@ -79,7 +85,13 @@ def _compression_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]
         step = max(1, len(part) // COMPRESSION_ROWS)
         chosen += part[::step]
     return [
-        {"code": record["code"], "seed": record["seed"], "stage": row["stage"], "phi": row["solid_fraction"], "p": row["pressure"]}
+        {
+            "code": record["code"],
+            "seed": record["seed"],
+            "stage": row["stage"],
+            "phi": row["solid_fraction"],
+            "p": row["pressure"],
+        }
         for row in chosen
     ]
 

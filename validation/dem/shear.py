@@ -55,7 +55,9 @@ def files(case: PlaneShear, seed: int) -> Files:
     mean = grains.mean_diameter
     lower = rough_wall(case, random)
     upper = Packing(rough_wall(case, random).centres + [0.0, 0.0, gap], lower.radii)
-    walls = Packing(np.vstack([lower.centres - [0.0, 0.0, mean], upper.centres + [0.0, 0.0, mean]]), np.tile(lower.radii, 2))
+    walls = Packing(
+        np.vstack([lower.centres - [0.0, 0.0, mean], upper.centres + [0.0, 0.0, mean]]), np.tile(lower.radii, 2)
+    )
     box = np.array([[0.0, case.length], [0.0, case.depth], [-3.0 * mean, gap + 3.0 * mean]])
     closing = gap * (1.0 - LOOSE_FRACTION / CLOSED_FRACTION)
     deck = (
