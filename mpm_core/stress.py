@@ -128,8 +128,8 @@ def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
 def closing_strain(density, around, shear_rate, exchange):  # type: ignore[no-untyped-def]
     """The compressive strain of one step towards the density around; `exchange` is dt over the time constant.
 
-    It is d s/(1 + s) with the share s = exchange gamma_dot/(gamma_dot + QUIET_RATE) and d = ln(around/density), taken to
-    third order and bounded by 2 for points that have lost contact.
+    It is d s/(1 + s) with the share s = exchange gamma_dot/(gamma_dot + QUIET_RATE) and d = ln(around/density),
+    to third order and bounded by 2 for points that have lost contact.
     """
     share = exchange * shear_rate
     difference = max(0.0, 2.0 * (around - density))
