@@ -214,7 +214,7 @@ def consistent_flow(increment: Increment, guess: float, parameters: Parameters) 
         if flow.found == 0.0:
             # On an elastic step the slope says nothing; the point may not flow at all.
             trial = 0.0 if lower < 0.0 else 0.5 * (lower + upper)
-        elif abs(trial - flow.assumed) <= 1e-4 * tolerance:
+        elif slope > -math.inf and abs(trial - flow.assumed) <= 1e-4 * tolerance:
             return flow
         elif not lower < trial < upper:
             trial = 0.5 * (max(lower, 0.0) + upper) if upper < math.inf else flow.found
