@@ -95,13 +95,13 @@ def shear_figure(shear: Rows, curves: dict[str, tuple[Sequence[float], Sequence[
     """Friction and solid fraction of the grains over the inertial number, with the friction of the fitted laws."""
     figure = Figure(figsize=(WIDTH, 3.0), layout="constrained")
     friction, fraction = figure.subplots(1, 2)
-    numbers = [row["inertial_number"] for row in shear]
+    numbers = [row["I"] for row in shear]
     ratios, errors = zip(*(friction_of_mean_pressure(row) for row in shear), strict=True)
     friction.errorbar(numbers, ratios, errors, fmt="o", ms=3, color=MEAN, label="grains")
     friction.plot(numbers, [row["mu"] for row in shear], "x", ms=4, color="#999999", label="over the normal stress")
     for number, (name, (x, y)) in enumerate(curves.items()):
         friction.plot(x, y, color=COLORS[number % len(COLORS)], lw=1.1, label=name)
-    fraction.plot(numbers, [row["solid_fraction"] for row in shear], "o", ms=3, color=MEAN)
+    fraction.plot(numbers, [row["phi"] for row in shear], "o", ms=3, color=MEAN)
     for axes, label in ((friction, r"$\tau/p$"), (fraction, r"$\phi$")):
         axes.set_xscale("log")
         axes.set_xlabel("I, engineering rate", fontsize=9)

@@ -63,7 +63,7 @@ def write_data(reference: ReferenceSet, folder: Path, grain_density: float, grai
     if not reference.shear:
         raise InputError("the reference set holds no shear test to fit the laws to")
     folder.mkdir(parents=True, exist_ok=True)
-    slow = [row for row in reference.shear if row["inertial_number"] <= SLOW * 1.2]
+    slow = [row for row in reference.shear if row["I"] <= SLOW * 1.2]
     for name, rows in ((SHEAR_FILE, reference.shear), (SLOW_SHEAR_FILE, slow)):
         atomic.write_text(folder / name, _shear_table(rows, grain_density, grain_diameter))
     if reference.compression:
@@ -89,16 +89,16 @@ def _curve(fit: Fit) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 def friction_of_mean_pressure(row: dict[str, float]) -> tuple[float, float]:
     """tau/p of a row of plane shear, and its standard error."""
-    friction = row["shear_stress"] / row["pressure"]
-    return friction, row["mu_error"] * friction / row["mu"]
+    friction = row["tau_over_p3"]
+    return friction, row["se_mu"] * friction / row["mu"]
 
 
 def _shear_table(rows: Rows, grain_density: float, grain_diameter: float) -> str:
-    rows = sorted(rows, key=lambda row: row["inertial_number"])
+    rows = sorted(rows, key=lambda row: row["I"])
     return _table(
         {
             "test": "steady-shear",
-            "held_normal_stress": f"{np.mean([row['normal_stress'] for row in rows]):.6g}",
+            "held_normal_stress": f"{np.mean([row['szz'] for row in rows]):.6g}",
             "grain_density": f"{grain_density:g}",
             "grain_diameter": f"{grain_diameter:.6g}",
         },
@@ -107,28 +107,25 @@ def _shear_table(rows: Rows, grain_density: float, grain_diameter: float) -> str
             "friction_of_mean_pressure [1]",
             "standard_error_friction_of_mean_pressure [1]",
         ),
-        [(row["inertial_number"], *friction_of_mean_pressure(row)) for row in rows],
+        [(row["I"], *friction_of_mean_pressure(row)) for row in rows],
     )
 
 
 def _compression_table(rows: Rows, grain_density: float) -> str:
     first_seed = [row for row in rows if row["seed"] == rows[0]["seed"]]
-    loading = first_seed[: int(np.argmax([row["pressure"] for row in first_seed])) + 1]
-    used = [row for row in loading if SMALLEST_PRESSURE <= row["pressure"] <= LARGEST_PRESSURE]
+    loading = first_seed[: int(np.argmax([row["p"] for row in first_seed])) + 1]
+    used = [row for row in loading if SMALLEST_PRESSURE <= row["p"] <= LARGEST_PRESSURE]
     used = used[:: max(1, len(used) // COMPRESSION_POINTS)]
     first = used[0]
     return _table(
         {
             "test": "isotropic",
-            "initial_pressure": f"{first['pressure']:.6g}",
-            "density": f"{grain_density * first['solid_fraction']:.6g}",
+            "initial_pressure": f"{first['p']:.6g}",
+            "density": f"{grain_density * first['phi']:.6g}",
             "grain_density": f"{grain_density:g}",
         },
         ("volumetric_strain [1]", "pressure [Pa]", "standard_error_pressure [Pa]"),
-        [
-            (np.log(row["solid_fraction"] / first["solid_fraction"]), row["pressure"], PRESSURE_ERROR * row["pressure"])
-            for row in used[1:]
-        ],
+        [(np.log(row["phi"] / first["phi"]), row["p"], PRESSURE_ERROR * row["p"]) for row in used[1:]],
     )
 
 
