@@ -30,7 +30,7 @@ class Preset:
 PRESETS: dict[str, dict[str, Preset]] = {
     "mu_i_lc": {"10%": Preset(12, 0.4)},
 }
-ACCURACIES = ("10%", "3%")
+ACCURACIES = ("10%", "3%", "1%")
 
 
 def with_settings_for_accuracy(content: Any) -> Any:

@@ -176,7 +176,7 @@ class Scene(Section):
     """A complete scene."""
 
     title: str = Field(default="", description="one line for reports")
-    accuracy: Literal["10%", "3%"] | None = Field(
+    accuracy: Literal["10%", "3%", "1%"] | None = Field(
         default=None,
         description="sets grid.cell_size and time.safety where the scene does not, to what kept runout, height and "
         "centre of mass of column collapses within this of a finer grid",

@@ -125,7 +125,7 @@ def test_a_file_that_is_no_scene_is_refused_in_one_line(tmp_path, monkeypatch, c
         ("grid.cell_size", "expected name=value"),
         ("=3", "expected name=value"),
         ("grid.cel_size=0.1", r"unknown key 'grid\.cel_size'; did you mean 'cell_size'\?"),
-        ("nonsense.key=1", "unknown key 'nonsense'; valid names: body, boundary"),
+        ("nonsense.key=1", "unknown key 'nonsense'; valid names: accuracy, body, boundary"),
         ("grid.cell_size=big", r"grid\.cell_size = 'big'"),
         ("title.short=1", r"--set title\.short: 'title' is a value, not a table"),
         ("grid=3", "grid = 3: .*dictionary"),

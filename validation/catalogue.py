@@ -56,12 +56,18 @@ SUITES: dict[str, tuple[str, ...]] = {
         "moving_frame",
         "turned_scene",
     ),
+    # What accuracy costs.
+    "speed": ("speed_error",),
 }
 NAMES = tuple(name for suite in SUITES.values() for name in suite)
 
 
 def get_case(name: str) -> Case:
-    """The case of that name, from its module. Raises InputError with the nearest valid name."""
+    """The case of that name, from its module; a hyphen may stand for an underscore.
+
+    Raises InputError with the nearest valid name.
+    """
+    name = name.replace("-", "_")
     if name not in NAMES:
         raise InputError(f"unknown validation case or suite '{name}'; {nearest_name(name, [*NAMES, *SUITES])}")
     case: Case = import_module(f"validation.cases.{name}").CASE

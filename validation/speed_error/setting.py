@@ -25,7 +25,7 @@ COLUMNS: dict[str, tuple[list[float], list[float]]] = {
 MASS_SHARE = 0.98
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class Setting:
     """One run: material, column, and what may be chosen for the sake of speed; `cell_size` in m."""
 

@@ -1,0 +1,30 @@
+"""`accuracy` in a scene: what it sets, what it leaves alone, what it refuses."""
+
+import pytest
+from scenes_for_tests import CAM_CLAY, COLUMN, changed
+
+from materials import InputError
+from mpm_core import Scene
+
+
+def test_it_sets_what_the_scene_leaves_open():
+    scene = Scene.from_dict(changed(COLUMN, {"accuracy": "10%", "grid.cell_size": None}))
+    assert (scene.grid.cell_size, scene.time.safety) == (0.025, 0.4)
+    stated = Scene.from_dict(changed(COLUMN, {"accuracy": "10%", "time.safety": 0.2}))
+    assert (stated.grid.cell_size, stated.time.safety) == (0.025, 0.2)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"accuracy": "3%"}, "not reached on any grid with law 'mu_i_lc'; allowed: 10%"),
+        (
+            {"accuracy": "10%", "material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"},
+            "state grid.cell_size and time.safety instead",
+        ),
+        ({"accuracy": "10%", "grid.cell_size": None, "grid.upper": [3.1, 1.037]}, "divide the domain"),
+    ],
+)
+def test_what_no_grid_reached_is_refused(changes, message):
+    with pytest.raises(InputError, match=message):
+        Scene.from_dict(changed(COLUMN, changes))
