@@ -31,9 +31,7 @@ def case_named(name: str) -> AnyCase:
     return cases[name]
 
 
-def perform_all(
-    runs: Sequence[Run], out: Path, time_limit: float, report: Callable[[Run, str], None]
-) -> list[Outcome]:
+def perform_all(runs: Sequence[Run], out: Path, time_limit: float, report: Callable[[Run, str], None]) -> list[Outcome]:
     """Make every run that is not finished below `out`, at most `time_limit` [s] for each deck.
 
     A failing run does not stop the others; a missing code raises InputError when its turn comes.

@@ -48,9 +48,7 @@ CASES: tuple[AnyCase, ...] = (
         stages=SHEAR_STAGES,
         liggghts_seeds=(1, 2, 3),
     ),
-    Compression(
-        name="compression", purpose="isotropic compression and unloading up to 200 kPa", liggghts_seeds=(1, 2)
-    ),
+    Compression(name="compression", purpose="isotropic compression and unloading up to 200 kPa", liggghts_seeds=(1, 2)),
     column(1, "glued", FOUR, TWO),
     column(4, "glued", FOUR, TWO),
     column(6, "glued", FOUR, ()),

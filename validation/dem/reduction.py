@@ -15,6 +15,8 @@ from validation.grains.observe import observe_folder
 COLLAPSES, PROVENANCE = "collapse", "provenance.json"
 # Rows kept of a compression test: enough to fit slopes to, and a small file.
 COMPRESSION_ROWS = 60
+# A stage whose friction scatters more than this between blocks was still changing: steady ones stay below 0.01.
+LARGEST_ERROR = 0.02
 
 
 def reduce_runs(folder: Path, into: Path) -> list[Path]:
@@ -22,7 +24,9 @@ def reduce_runs(folder: Path, into: Path) -> list[Path]:
 
     Raises InputError if there is no finished run.
     """
-    runs = [(path.parent, json.loads(path.read_text(encoding="utf-8"))) for path in sorted(folder.glob(f"*/*/{RECORD}"))]
+    runs = [
+        (path.parent, json.loads(path.read_text(encoding="utf-8"))) for path in sorted(folder.glob(f"*/*/{RECORD}"))
+    ]
     if not runs:
         raise InputError(f"{folder} holds no finished run: no CASE/CODE-seedN/{RECORD}")
     (into / COLLAPSES).mkdir(parents=True, exist_ok=True)
@@ -32,22 +36,28 @@ def reduce_runs(folder: Path, into: Path) -> list[Path]:
             path = into / COLLAPSES / f"{record['case']}_{record['code']}_s{record['seed']}.h5"
             write_observation(path, observe_folder(run))
             written.append(path)
-    cells = {kind: [(run, record) for run, record in runs if record["kind"] == kind] for kind in ("shear", "compression")}
+    cells = {
+        kind: [(run, record) for run, record in runs if record["kind"] == kind] for kind in ("shear", "compression")
+    }
     for kind, rows in (("shear", _shear_rows), ("compression", _compression_rows)):
         if cells[kind]:
             path = into / f"{kind}.csv"
             write_text(path, _table([row for run, record in cells[kind] for row in rows(run, record)]))
             written.append(path)
-    provenance = {f"{record['case']}/{run.name}": _provenance(record) for kind in cells.values() for run, record in kind}
+    provenance = {
+        f"{record['case']}/{run.name}": _provenance(record) for kind in cells.values() for run, record in kind
+    }
     write_text(into / PROVENANCE, json.dumps(provenance, indent=1) + "\n")
     return [*written, into / PROVENANCE]
 
 
 def _shear_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
-    """The steady states of a shear run; I is the engineering rate's with p = sigma_zz."""
+    """The steady states of a shear run; I is the engineering rate's with p = sigma_zz. Unsteady stages are left out."""
     rows = []
     for row in _read(run / record["table"]):
         value = {name: float(text) for name, text in row.items()}
+        if value["mu_error"] > LARGEST_ERROR:
+            continue
         rows.append(
             {
                 "code": record["code"],
@@ -79,7 +89,13 @@ def _compression_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]
         step = max(1, len(part) // COMPRESSION_ROWS)
         chosen += part[::step]
     return [
-        {"code": record["code"], "seed": record["seed"], "stage": row["stage"], "phi": row["solid_fraction"], "p": row["pressure"]}
+        {
+            "code": record["code"],
+            "seed": record["seed"],
+            "stage": row["stage"],
+            "phi": row["solid_fraction"],
+            "p": row["pressure"],
+        }
         for row in chosen
     ]
 
