@@ -34,7 +34,7 @@ def run_page(
     Returns what the commands printed; fails with it if one of them fails.
     """
     clone.mkdir()
-    for name in ("scenes", "plugins"):
+    for name in ("scenes", "plugins", "tests"):
         (clone / name).symlink_to(ROOT / name)
     environment = {
         **os.environ,

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from validation.dem_report.fitted_laws import friction_of_mean_pressure
 from validation.dem_report.judgement import Judgement
 from validation.dem_report.reference_set import Ensemble, Rows
 from validation.grains.distance import surface_at
@@ -95,8 +96,8 @@ def shear_figure(shear: Rows, curves: dict[str, tuple[Sequence[float], Sequence[
     figure = Figure(figsize=(WIDTH, 3.0), layout="constrained")
     friction, fraction = figure.subplots(1, 2)
     numbers = [row["I"] for row in shear]
-    errors = [row["se_mu"] for row in shear]
-    friction.errorbar(numbers, [row["tau_over_p3"] for row in shear], errors, fmt="o", ms=3, color=MEAN, label="grains")
+    ratios, errors = zip(*(friction_of_mean_pressure(row) for row in shear), strict=True)
+    friction.errorbar(numbers, ratios, errors, fmt="o", ms=3, color=MEAN, label="grains")
     friction.plot(numbers, [row["mu"] for row in shear], "x", ms=4, color="#999999", label="over the normal stress")
     for number, (name, (x, y)) in enumerate(curves.items()):
         friction.plot(x, y, color=COLORS[number % len(COLORS)], lw=1.1, label=name)

@@ -21,7 +21,8 @@ SHEAR_FILE, SLOW_SHEAR_FILE, COMPRESSION_FILE = "shear.csv", "slow_shear.csv", "
 # A law without rates is fitted where the friction of the grains hardly depends on them.
 SLOW = 0.03
 # Of the grains in the columns [Pa].
-LARGEST_PRESSURE = 10e3
+SMALLEST_PRESSURE, LARGEST_PRESSURE = 500.0, 10e3
+COMPRESSION_POINTS = 30
 # Standard error of the pressures of compression, which come without one [1].
 PRESSURE_ERROR = 0.05
 CURVE_POINTS = 12
@@ -86,6 +87,12 @@ def _curve(fit: Fit) -> tuple[tuple[float, ...], tuple[float, ...]]:
     return tuple(numbers.tolist()), tuple(friction.tolist())
 
 
+def friction_of_mean_pressure(row: dict[str, float]) -> tuple[float, float]:
+    """tau/p of a row of plane shear, and its standard error."""
+    friction = row["tau_over_p3"]
+    return friction, row["se_mu"] * friction / row["mu"]
+
+
 def _shear_table(rows: Rows, grain_density: float, grain_diameter: float) -> str:
     rows = sorted(rows, key=lambda row: row["I"])
     return _table(
@@ -100,12 +107,15 @@ def _shear_table(rows: Rows, grain_density: float, grain_diameter: float) -> str
             "friction_of_mean_pressure [1]",
             "standard_error_friction_of_mean_pressure [1]",
         ),
-        [(row["I"], row["tau_over_p3"], row["se_mu"] * row["tau_over_p3"] / row["mu"]) for row in rows],
+        [(row["I"], *friction_of_mean_pressure(row)) for row in rows],
     )
 
 
 def _compression_table(rows: Rows, grain_density: float) -> str:
-    used = [row for row in rows if row["p"] <= LARGEST_PRESSURE]
+    first_seed = [row for row in rows if row["seed"] == rows[0]["seed"]]
+    loading = first_seed[: int(np.argmax([row["p"] for row in first_seed])) + 1]
+    used = [row for row in loading if SMALLEST_PRESSURE <= row["p"] <= LARGEST_PRESSURE]
+    used = used[:: max(1, len(used) // COMPRESSION_POINTS)]
     first = used[0]
     return _table(
         {

@@ -24,7 +24,8 @@ JUDGED_LAWS = (
     JudgedLaw(
         law="modified_cam_clay",
         title="Modified Cam Clay",
-        data=(SLOW_SHEAR_FILE, COMPRESSION_FILE),
+        # Together with the compression the fit runs to lambda = kappa and a wrong M; the indices stay the paper's.
+        data=(SLOW_SHEAR_FILE,),
         given={**POISSON_RATIO, "grain_density": 2450.0, "overconsolidation_ratio": 1.0},
         limits="no rate dependence; isotropic hardening of a clay for grains that hardly compress",
     ),

@@ -68,7 +68,10 @@ class Bench:
         column = column_of(ensemble)
         cell_size = self.cell_size * variant.cell_factor
         scene = varied(column_scene(column, law.judged.law, law.parameters, cell_size), law.judged.law, variant)
-        judged_by = reference.ensemble(ensemble.case.replace(ensemble.floor, variant.floor))
+        try:
+            judged_by = reference.ensemble(ensemble.case.replace(ensemble.floor, variant.floor))
+        except InputError as error:
+            return Judgement(variant.name, ensemble, None, None, str(error), variant)
         return self._judged(variant.name, scene, column, judged_by, law.judged.law, variant)
 
     def _judged(

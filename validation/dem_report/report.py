@@ -44,8 +44,8 @@ class Report:
 
     @property
     def controls_differ(self) -> bool:
-        """Whether every deliberate mistake was noticed."""
-        return all(found.verdict is Verdict.DIFFERS for found in self.controls)
+        """Whether every deliberate mistake was noticed; one that could not be run was not."""
+        return all(found.comparison is not None and found.verdict is Verdict.DIFFERS for found in self.controls)
 
     def of_column(self, ensemble: Ensemble) -> list[Judgement]:
         """The judgements on one column."""

@@ -84,7 +84,9 @@ def sections(report: Report, shear: Rows) -> list[Section]:
 def _controls_said(report: Report) -> str:
     if report.controls_differ:
         return "All of them differ."
-    missed = ", ".join(found.name for found in report.controls if found.verdict != "differs")
+    missed = ", ".join(
+        found.name for found in report.controls if found.comparison is None or found.verdict != "differs"
+    )
     return f"NOT all of them differ: {missed}."
 
 
