@@ -23,8 +23,8 @@ FILL = 0.64 * 1.1
 SETTLING_TIME = 0.5
 # Space below the floor and beyond its ends [m].
 MARGIN = 0.05
-# YADE's rolling spring is a constant [N m/rad]; epsd2 takes the tangential stiffness times the effective radius squared, which is this
-# much for 15 mm grains that carry 0.3 N, the load in the middle of a 0.3 m column.
+# YADE's rolling spring is a constant [N m/rad]; epsd2 takes the tangential stiffness times the square of the effective
+# radius, which is this much for 15 mm grains that carry 0.3 N, the load in the middle of a 0.3 m column.
 ROLLING_STIFFNESS = 0.3
 
 Files = dict[str, str]

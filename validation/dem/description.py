@@ -87,8 +87,8 @@ class Collapse(Case):
 class ShearStage(Described):
     """One speed of the wall, and the strains of its transient and of its average.
 
-    The nominal inertial number is that of the wall's speed over the nominal height; the grains dilate and slip along the
-    wall, so that the bulk's own number, which is measured, is 0.7 of it in slow flow and a third in the fastest.
+    The nominal inertial number is that of the wall's speed over the nominal height; the grains dilate and slip along
+    the wall, so that the bulk's own number, which is measured, is 0.7 of it in slow flow and a third in the fastest.
     """
 
     nominal_inertial_number: Positive

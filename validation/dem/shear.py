@@ -54,9 +54,10 @@ def files(case: PlaneShear, seed: int) -> Files:
     gas = loose(random_radii(grains, number, random), space, (True, True, False), random)
     mean = grains.mean_diameter
     lower = rough_wall(case, random)
-    upper = Packing(rough_wall(case, random).centres + [0.0, 0.0, gap], lower.radii)
+    upper = Packing(rough_wall(case, random).centres + np.array([0.0, 0.0, gap]), lower.radii)
     walls = Packing(
-        np.vstack([lower.centres - [0.0, 0.0, mean], upper.centres + [0.0, 0.0, mean]]), np.tile(lower.radii, 2)
+        np.vstack([lower.centres - [0.0, 0.0, mean], upper.centres + np.array([0.0, 0.0, mean])]),
+        np.tile(lower.radii, 2),
     )
     box = np.array([[0.0, case.length], [0.0, case.depth], [-3.0 * mean, gap + 3.0 * mean]])
     closing = gap * (1.0 - LOOSE_FRACTION / CLOSED_FRACTION)
