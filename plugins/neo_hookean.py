@@ -111,6 +111,7 @@ def sound_speed(stress: SymmetricTensor, density: float, state: State, parameter
 LAW = Law(
     name="neo_hookean",
     summary="compressible Neo-Hookean elasticity at large strain, for verification",
+    carries_tension=True,
     parameters=Parameters,
     state=State,
     initial_state=initial_state,
