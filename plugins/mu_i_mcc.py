@@ -67,7 +67,7 @@ from materials import (
 # The last move of the yield surface, relative; the secant method leaves its square.
 TOLERANCE = 1e-8
 MAXIMUM_ITERATIONS = 60
-# Of the inertial number found against the one assumed, relative; more means that the return jumps.
+# Of the yield surface by the inertial number found against the one assumed; more means that the return jumps.
 LARGEST_MISMATCH = 1e-6
 # Strain below which a return does not jump.
 SMALLEST_PART = 1e-4
@@ -186,12 +186,13 @@ def led_through(increment: Increment, parts: int, guess: float, parameters: Para
     """The last of equal parts of a step, and whether each had the inertial number of its own plastic strain."""
     start = CamClayStep(increment.start_pressure, increment.size_at_rest, increment.start_deviator, 0.0, 0.0)
     flow, is_consistent = Flow(start, 0.0, guess), True
+    largest_mismatch = LARGEST_MISMATCH * sensitive_inertial_number(parameters)
     compression, shear, dt = increment.compression / parts, scaled(increment.shear, 1.0 / parts), increment.dt / parts
     for _ in range(parts):
         size_at_rest = flow.end.preconsolidation_pressure / growth_of_surface(flow.assumed, parameters)
         part = Increment(flow.end.mean_pressure, flow.end.deviator, compression, shear, size_at_rest, dt)
         flow = consistent_flow(part, flow.found, parameters)
-        is_consistent = is_consistent and abs(flow.found - flow.assumed) <= LARGEST_MISMATCH * flow.assumed
+        is_consistent = is_consistent and abs(flow.found - flow.assumed) <= largest_mismatch
     return flow, is_consistent
 
 
@@ -214,7 +215,7 @@ def consistent_flow(increment: Increment, guess: float, parameters: Parameters) 
         if flow.found == 0.0:
             # On an elastic step the slope says nothing; the point may not flow at all.
             trial = 0.0 if lower < 0.0 else 0.5 * (lower + upper)
-        elif abs(trial - flow.assumed) <= 1e-4 * tolerance:
+        elif slope > -math.inf and abs(trial - flow.assumed) <= 1e-4 * tolerance:
             return flow
         elif not lower < trial < upper:
             trial = 0.5 * (max(lower, 0.0) + upper) if upper < math.inf else flow.found
