@@ -34,6 +34,8 @@ SUITES: dict[str, tuple[str, ...]] = {
         "rest",
         "time_step_independence",
     ),
+    # One scene for each granular law.
+    "laws": ("collapse_of_every_law",),
     # What a user may do to it.
     "hard": (
         "overconsolidated_collapses",
