@@ -82,9 +82,7 @@ def note(law: str, found: Collapse) -> str:
 def measure(effort: Effort) -> Evidence:
     """Every granular law."""
     results = {law: collapsed(collapse(base, CELL_SIZE[effort], column(law))) for law, base in LAWS.items()}
-    measurements = [
-        one for law, found in results.items() for one in (*survival(law, found.trial), at_rest(law, found))
-    ]
+    measurements = [one for law, found in results.items() for one in (*survival(law, found.trial), at_rest(law, found))]
     return Evidence(tuple(measurements), notes=tuple(note(law, found) for law, found in results.items()))
 
 
