@@ -16,9 +16,9 @@ SUITES: dict[str, tuple[str, ...]] = {
         "mcc_one_dimensional_compression",
         "return_mapping",
         "mu_i_mcc_return",
-        "mu_i_mcc_cam_clay_limit",
         "mu_i_mcc_steady_shear",
         "mu_i_mcc_rate_jump",
+        "mu_i_mcc_cam_clay_limit",
         "opening_and_closing",
         "rigid_rotation",
         "elastic_bar_vibration",
@@ -34,6 +34,8 @@ SUITES: dict[str, tuple[str, ...]] = {
         "rest",
         "time_step_independence",
     ),
+    # One scene for each granular law.
+    "laws": ("collapse_of_every_law",),
     # What a user may do to it.
     "hard": (
         "overconsolidated_collapses",

@@ -32,7 +32,7 @@ def measurements(result: ElementResult, second: float, name: str) -> tuple[Measu
     after = result.time > DURATIONS["slow_duration"] + 2.0 * DURATIONS["time_step"]
     end = steady_ratio(second, result)
     stray = float((ratio[after] - end).max() if second == FAST else (end - ratio[after]).max())
-    # The band asks for a transient of more than a twentieth of M: one over its size stays below 1.
+    # The band asks for a transient of more than 0.02, a sixtieth of M.
     return (
         scaled_error(f"{name}: q/p at the end", "1", float(ratio[-1]), end, 1.0, BAND),
         upper_bound(f"{name}: 0.01 over the overshoot of q/p", "1", 0.01 / max(stray, 1e-12), TRANSIENT_BAND),

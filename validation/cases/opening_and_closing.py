@@ -13,7 +13,10 @@ PRESSURE, DENSITY = 1000.0, 1500.0
 CYCLES, OPENING, STEPS = 10, 0.1, 50
 LAWS = {
     "modified_cam_clay": "paper_ocr4",
+    "mu_i_mcc": "paper_ocr4",
     "mu_i_lc": "paper",
+    "mu_i_elastoplastic": "paper",
+    "mu_i_phi_i": "paper",
     "drucker_prager": "aluminium_bars",
     "newtonian": "glycerol",
 }
