@@ -29,20 +29,6 @@ class GrainSnapshot:
         return len(self.solid_volumes)
 
 
-@dataclass(frozen=True)
-class Contacts:
-    """Contacts at one time.
-
-    points     where the grains touch, shape (n, 3) [m]
-    branches   from the centre of the second grain to that of the first, shape (n, 3) [m]
-    forces     on the first grain, shape (n, 3) [N]
-    """
-
-    points: Array
-    branches: Array
-    forces: Array
-
-
 def sphere_volumes(radii: Array) -> Array:
     """Volumes of spheres [m3] from their radii [m]."""
     return 4.0 / 3.0 * np.pi * radii**3
