@@ -23,7 +23,7 @@ $(INSTALLED): pyproject.toml constraints.txt
 
 demo: $(INSTALLED)
 	@for material in $(MATERIALS); do \
-		$(BIN)/grainlaw run scenes/collapse_$$material.toml --set grid.cell_size=0.0125 \
+		$(BIN)/grainlaw run scenes/collapse_$$material.toml --set grid.cell_size=0.0125 --threads 1 \
 			--out $(DEMO)/$$material --overwrite || exit 1; \
 	done
 	@$(BIN)/grainlaw compare $(MATERIALS:%=$(DEMO)/%) --out $(DEMO)/comparison
