@@ -1,6 +1,7 @@
 """What a constitutive law is: declarations, registry, tensor algebra, compilation and element tests."""
 
 from materials.cam_clay import CamClay, CamClayStep, cam_clay_step, log_volume_of_figure_1
+from materials.cam_clay_small_step import SmallStep, cam_clay_small_step
 from materials.declarations import Parameter, StateVariable, checked_parameters
 from materials.errors import InputError, SimulationError
 from materials.gap import Contact, after_closing
@@ -44,11 +45,13 @@ __all__ = [
     "Parameter",
     "ParameterSet",
     "SimulationError",
+    "SmallStep",
     "StateVariable",
     "SymmetricTensor",
     "added",
     "after_closing",
     "assembled_stress",
+    "cam_clay_small_step",
     "cam_clay_step",
     "checked_parameters",
     "congruent",

@@ -44,6 +44,9 @@ class Law:
     update          (stress, strain_rate, density, state, parameters, dt) -> (stress, state); one step of dt [s] at the
                     strain rate D [1/s], ending at `density`; the caller has already rotated the stress
     sound_speed     (stress, density, state, parameters) -> fastest wave speed [m/s]
+    small_step      like `update`, but -> (stress, state, succeeded): a shorter way without loops, for steps as small as
+                    the core takes, that the compiler can take for many points at once; where it says that it has not
+                    succeeded, `update` is called. None for a law whose `update` is that short itself
     parameter_sets  named parameter sets, the first of which element tests take by default
     contradiction   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
     carries_tension whether the material may be pulled; a law of loose grains leaves it at False
@@ -63,6 +66,9 @@ class Law:
     parameter_sets: Mapping[str, ParameterSet] = field(default_factory=dict)
     contradiction: Callable[[Any], str] = _no_contradiction
     carries_tension: bool = False
+    small_step: (
+        Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any, bool]] | None
+    ) = None
     hook_version: int = 1
 
     def checked(self, values: dict[str, Any], where: str) -> Any:

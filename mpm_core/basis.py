@@ -2,7 +2,7 @@
 
 Each basis gives, for a point at the distance f from the first node of its stencil, the weights of the `width` nodes
 along one axis, and the second moment sum(w (i - f)^2), by which the affine transfer and the moving-least-squares
-gradient are scaled (Jiang et al. 2015; Hu et al. 2018).
+gradient are scaled (Jiang et al. 2015; Hu et al. 2018). The functions take one point, or four in a quad (`quads`).
 
 A wall lies on a line of nodes, and stencils of points near it reach a ghost node beyond. The ghost's velocity is tied
 to the two nodes inside by linear extrapolation, v_ghost = 2 v_wall - v_inside, which changes the weights: twice the
@@ -12,16 +12,20 @@ wall and reproduce linear fields, so that no order is lost to it; the second mom
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from numba.extending import register_jitable
 
 from materials.compilation import named
+from mpm_core.quads import greater, lesser, truncated, where_equal
 from mpm_core.sources import CORE_MARK
 
 # Towards a wall the moment goes to zero with the mass of the row inside, and stiffness over mass grows without bound.
 # Below this value, at a twentieth of a cell from the wall, a point is taken to be that far: no explicit step that is
 # stable elsewhere then fails there. Points are generated farther away than that.
 SMALLEST_MOMENT_AT_WALL = 0.05
+# The moment of hat functions vanishes at every node; the far node has no weight there either.
+SMALLEST_MOMENT_OF_HATS = 1e-12
 
 
 @dataclass(frozen=True)
@@ -31,7 +35,7 @@ class Basis:
     width         number of nodes of a stencil
     offset        the first node of the stencil of a point at x is floor(x - offset)
     weights       weights of the nodes at the distance f from the first
-    inverse_moment  one over the second moment of the weights about the point
+    moment        second moment of the weights about the point
     lower_wall    weights where the first node is a ghost
     upper_wall    weights where the last node is a ghost
     """
@@ -40,7 +44,7 @@ class Basis:
     width: int
     offset: float
     weights: Callable[..., tuple[float, ...]]
-    inverse_moment: Callable[[float], float]
+    moment: Callable[[float], float]
     lower_wall: Callable[..., tuple[float, ...]]
     upper_wall: Callable[..., tuple[float, ...]]
 
@@ -52,9 +56,9 @@ def linear_weights(f: float) -> tuple[float, float]:
 
 
 @register_jitable
-def inverse_linear_moment(f: float) -> float:
-    """1/(f (1 - f)); the moment vanishes at the nodes together with the weight of the far node."""
-    return 1.0 / max(f * (1.0 - f), 1e-12)
+def linear_moment(f: float) -> float:
+    """F (1 - f), which vanishes at the nodes together with the weight of the far node."""
+    return f * (1.0 - f)
 
 
 @register_jitable
@@ -70,9 +74,9 @@ def quadratic_weights(f: float) -> tuple[float, float, float]:
 
 
 @register_jitable
-def inverse_quadratic_moment(f: float) -> float:
-    """4 everywhere."""
-    return 4.0
+def quadratic_moment(f: float) -> float:
+    """1/4 everywhere."""
+    return 0.25
 
 
 @register_jitable
@@ -100,9 +104,9 @@ def cubic_weights(f: float) -> tuple[float, float, float, float]:
 
 
 @register_jitable
-def inverse_cubic_moment(f: float) -> float:
-    """3 everywhere."""
-    return 3.0
+def cubic_moment(f: float) -> float:
+    """1/3 everywhere."""
+    return 1.0 / 3.0
 
 
 @register_jitable
@@ -120,40 +124,60 @@ def cubic_at_upper_wall(w: tuple[float, float, float, float]) -> tuple[float, fl
 BASES = {
     basis.name: basis
     for basis in (
-        Basis("linear", 2, 0.0, linear_weights, inverse_linear_moment, linear_at_wall, linear_at_wall),
+        Basis("linear", 2, 0.0, linear_weights, linear_moment, linear_at_wall, linear_at_wall),
         Basis(
             "quadratic",
             3,
             0.5,
             quadratic_weights,
-            inverse_quadratic_moment,
+            quadratic_moment,
             quadratic_at_lower_wall,
             quadratic_at_upper_wall,
         ),
-        Basis("cubic", 4, 1.0, cubic_weights, inverse_cubic_moment, cubic_at_lower_wall, cubic_at_upper_wall),
+        Basis("cubic", 4, 1.0, cubic_weights, cubic_moment, cubic_at_lower_wall, cubic_at_upper_wall),
     )
 }
 
 
-def make_stencil(basis: Basis) -> Callable[..., tuple[int, float, tuple[float, ...], float]]:
-    """A function (grid coordinate, lower ghost, upper ghost) -> (first node, f, weights, 1/moment), for kernels."""
+def make_stencil(basis: Basis) -> Callable[..., Any]:
+    """A function (grid coordinate, lower ghost, upper ghost) -> (first node, f, weights, moment), for kernels.
+
+    The first node is a whole number, but a float, and a quad if the coordinate is one.
+    """
     width, offset, weights = basis.width, basis.offset, basis.weights
-    inverse_moment, at_lower_wall, at_upper_wall = basis.inverse_moment, basis.lower_wall, basis.upper_wall
+    moment_of, at_lower_wall, at_upper_wall = basis.moment, basis.lower_wall, basis.upper_wall
+    smallest = SMALLEST_MOMENT_AT_WALL if width > 2 else SMALLEST_MOMENT_OF_HATS
+    select = _make_select(width)
 
     @register_jitable
     @named(f"{basis.name}_{CORE_MARK}")
     def stencil(coordinate, lower_ghost, upper_ghost):  # type: ignore[no-untyped-def]
         # A point exactly on the upper wall belongs to the last cell.
-        first = min(int(coordinate - offset), upper_ghost - width + 1)
+        last_first = float(upper_ghost - width + 1)
+        first = lesser(truncated(coordinate - offset), last_first)
         f = coordinate - first
         w = weights(f)
-        inverse = inverse_moment(f)
-        if first == lower_ghost:
-            inverse = 1.0 / max(1.0 / inverse - 2.0 * w[0], SMALLEST_MOMENT_AT_WALL)
-            w = at_lower_wall(w)
-        elif first + width - 1 == upper_ghost:
-            inverse = 1.0 / max(1.0 / inverse - 2.0 * w[width - 1], SMALLEST_MOMENT_AT_WALL)
-            w = at_upper_wall(w)
-        return first, f, w, inverse
+        lower = float(lower_ghost)
+        tied = where_equal(first, lower, w[0], where_equal(first, last_first, w[width - 1], 0.0))
+        at_wall = select(first, last_first, at_upper_wall(w), w)
+        return first, f, select(first, lower, at_lower_wall(w), at_wall), greater(moment_of(f) - 2.0 * tied, smallest)
 
     return stencil
+
+
+def _make_select(width: int) -> Callable[..., Any]:
+    """`where_equal` for tuples of `width` items."""
+
+    @register_jitable
+    def select_2(a, b, then, otherwise):  # type: ignore[no-untyped-def]
+        return where_equal(a, b, then[0], otherwise[0]), where_equal(a, b, then[1], otherwise[1])
+
+    @register_jitable
+    def select_3(a, b, then, otherwise):  # type: ignore[no-untyped-def]
+        return (*select_2(a, b, then, otherwise), where_equal(a, b, then[2], otherwise[2]))
+
+    @register_jitable
+    def select_4(a, b, then, otherwise):  # type: ignore[no-untyped-def]
+        return (*select_3(a, b, then, otherwise), where_equal(a, b, then[3], otherwise[3]))
+
+    return {2: select_2, 3: select_3, 4: select_4}[width]

@@ -12,11 +12,12 @@ from materials.law import Law
 from mpm_core.basis import Basis
 from mpm_core.columns import DENSITY, FIRST_STATE, NAMES, SXX, SXY, SYY, SZZ, VX, VY, X, Y, allocate
 from mpm_core.grid import Grid, Window
+from mpm_core.grid_to_points import BLOCK, make_grid_to_points
+from mpm_core.grid_to_points import REPORTS as TRANSFER_REPORTS
+from mpm_core.points_to_grid import make_points_to_grid
 from mpm_core.sorting import balanced_chunks, sort_by_stencil
 from mpm_core.stress import REPORTS as STRESS_REPORTS
 from mpm_core.stress import make_stress_pass
-from mpm_core.transfer import BLOCK, make_grid_to_points, make_points_to_grid
-from mpm_core.transfer import REPORTS as TRANSFER_REPORTS
 
 
 class Body:
@@ -109,7 +110,7 @@ class Body:
                 grid.nodes,
                 grid.shape[1],
                 grid.ghosts,
-                *grid.origin,
+                grid.origin,
                 grid.cell_size,
             )
 
@@ -121,7 +122,7 @@ class Body:
             grid.nodes,
             grid.shape[1],
             grid.ghosts,
-            *grid.origin,
+            grid.origin,
             grid.cell_size,
             dt,
             memory,

@@ -15,8 +15,7 @@ from materials.compilation import named
 from mpm_core.basis import Basis, make_stencil
 from mpm_core.body import Body
 from mpm_core.columns import X, Y
-from mpm_core.grid import COMPONENTS, Grid
-from mpm_core.lanes import deposit, lanes
+from mpm_core.grid import COMPONENTS, FX, FY, Grid
 from mpm_core.sources import CORE_MARK
 
 # (body, time [s]) -> acceleration [m/s2] of its points in their present order, shape (2, n)
@@ -47,9 +46,10 @@ def _make_scatter(basis: Basis) -> Callable[..., Any]:
         for p in range(len(x)):
             i, _, wx, _ = stencil((x[p] - origin_x) / cell_size, ghosts[0], ghosts[1])
             j, _, wy, _ = stencil((y[p] - origin_y) / cell_size, ghosts[2], ghosts[3])
-            amounts = lanes((0.0, 0.0, 0.0, force[0, p], force[1, p], 0.0, 0.0, 0.0))
             for a in range(width):
                 for b in range(width):
-                    deposit(nodes, ((i + a) * nodes_y + j + b) * COMPONENTS, wx[a] * wy[b], amounts)
+                    node = ((int(i) + a) * nodes_y + int(j) + b) * COMPONENTS
+                    nodes[node + FX] += wx[a] * wy[b] * force[0, p]
+                    nodes[node + FY] += wx[a] * wy[b] * force[1, p]
 
     return scatter

@@ -6,14 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm_core.lanes import BYTES, LANES
+from mpm_core.quads import LANES
 
-# Components of a node. Before the momentum update: mass, momentum, force, volume; after it: mass, new and old velocity,
-# density. The rest fills the node up to one vector of `lanes`.
-MASS = 0
-PX, PY, FX, FY, VOLUME = 1, 2, 3, 4, 5
-NEW_VX, NEW_VY, OLD_VX, OLD_VY, NODE_DENSITY = 1, 2, 3, 4, 5
-COMPONENTS = LANES
+# Components of a node, two quads that fill a cache line. The first quad: momentum and force before the momentum update,
+# new and old velocity after it. The second: mass and volume before, mass and density after, and room for two more.
+PX, PY, FX, FY = 0, 1, 2, 3
+NEW_VX, NEW_VY, OLD_VX, OLD_VY = 0, 1, 2, 3
+BULK = LANES
+MASS, VOLUME, NODE_DENSITY = BULK, BULK + 1, BULK + 1
+COMPONENTS = 2 * LANES
+
+CACHE_LINE = 64
 
 # Nodes beyond each side of the domain, enough for the widest stencil of a point that touches a wall.
 GHOSTS = 2
@@ -71,7 +74,7 @@ class Grid:
 
 
 def _aligned_zeros(count: int) -> NDArray[np.float64]:
-    """Zeroed doubles that start on a boundary of vectors; the memory is not touched."""
-    room = np.zeros(count + LANES)
-    start = (-room.ctypes.data % BYTES) // room.itemsize
+    """Zeroed doubles, each node in a cache line of its own; the memory is not touched."""
+    room = np.zeros(count + COMPONENTS)
+    start = (-room.ctypes.data % CACHE_LINE) // room.itemsize
     return room[start : start + count]

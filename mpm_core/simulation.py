@@ -15,13 +15,7 @@ from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, join_periodic
 from mpm_core.columns import LXX, LYY, X, Y
 from mpm_core.fields import chosen_fields
 from mpm_core.grid import Grid, Window
-from mpm_core.held_nodes import hold_nodes
-from mpm_core.initial import build_bodies
-from mpm_core.scene import Scene
-from mpm_core.sorting import LONGEST_DRIFT
-from mpm_core.stress import INTERNAL_WORK, MAX_INCREMENT, MAX_SIGNAL_SPEED
-from mpm_core.threads import use_threads
-from mpm_core.transfer import (
+from mpm_core.grid_to_points import (
     HIGHEST_X,
     HIGHEST_Y,
     KINETIC_ENERGY,
@@ -31,6 +25,12 @@ from mpm_core.transfer import (
     MOVED_X,
     MOVED_Y,
 )
+from mpm_core.held_nodes import hold_nodes
+from mpm_core.initial import build_bodies
+from mpm_core.scene import Scene
+from mpm_core.sorting import LONGEST_DRIFT
+from mpm_core.stress import INTERNAL_WORK, MAX_INCREMENT, MAX_SIGNAL_SPEED
+from mpm_core.threads import use_threads
 
 # A volumetric strain increment beyond which no explicit step can be right.
 LARGEST_INCREMENT = 0.5

@@ -11,10 +11,12 @@ KERNEL_FILES = (
     "columns",
     "fields",
     "grid",
-    "lanes",
+    "grid_to_points",
     "momentum",
+    "points_to_grid",
+    "quads",
     "sorting",
+    "stencils",
     "stress",
-    "transfer",
 )
 CORE_MARK = mark_of_sources(Path(__file__).with_name(f"{name}.py") for name in KERNEL_FILES)

@@ -38,8 +38,8 @@ from mpm_core.columns import (
     VY,
     X,
 )
+from mpm_core.grid_to_points import BLOCK
 from mpm_core.sources import CORE_MARK
-from mpm_core.transfer import BLOCK
 
 # The shear rate [1/s] below which material counts as at rest.
 QUIET_RATE = 0.1
@@ -195,6 +195,8 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
     the largest volumetric strain increment of the step. Where anything is not finite, the last one is NaN.
     """
     update, sound_speed = law.update, law.sound_speed
+    has_small_step = law.small_step is not None
+    small_step = law.small_step if has_small_step else law.update
     parameter_class = law.parameters
     mark = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}"
     load, store = make_state_access(law.state, mark)
@@ -212,6 +214,29 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
             stress, state = update(stress, strain_rate, density[p], load(rows, p), law_parameters, dt)
             sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
             store(rows, p, state)
+
+    @register_jitable
+    @named(mark)
+    def apply_law_where_pending(rows, first, last, closings, parameters, dt, pending):  # type: ignore[no-untyped-def]
+        for p in range(first, last):
+            if pending[p - first]:
+                apply_law(rows, p, p + np.uint64(1), closings[p - first :], parameters, dt)
+
+    @register_jitable
+    @named(mark)
+    def apply_small_step(rows, first, last, closings, parameters, dt, pending):  # type: ignore[no-untyped-def]
+        lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+        sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
+        law_parameters = parameter_class(*parameters)
+        for p in range(first, last):
+            motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
+            strain_rate = added(motion, isotropic(closings[p - first]))
+            stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
+            stress, state, succeeded = small_step(stress, strain_rate, density[p], load(rows, p), law_parameters, dt)
+            pending[p - first] = not succeeded
+            if succeeded:
+                sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
+                store(rows, p, state)
 
     @register_jitable
     @named(mark)
@@ -234,11 +259,16 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
         count = len(rows[X])
         for block in prange(reports.shape[0]):
             closings, works = np.empty(GROUP), np.empty(GROUP)
+            pending = np.empty(GROUP, np.int64)
             fastest, largest, work = np.int64(0), np.int64(0), 0.0
             for start in range(block * BLOCK, min(count, (block + 1) * BLOCK), GROUP):
                 first, last = np.uint64(start), np.uint64(min(count, start + GROUP))
                 increment = bring_forward(rows, first, last, dt, exchange, closings, works, keeps_shear_strain)
-                apply_law(rows, first, last, closings, parameters, dt)
+                if has_small_step:
+                    apply_small_step(rows, first, last, closings, parameters, dt, pending)
+                    apply_law_where_pending(rows, first, last, closings, parameters, dt, pending)
+                else:
+                    apply_law(rows, first, last, closings, parameters, dt)
                 speed = largest_signal_speed(rows, first, last, parameters)
                 work += work_done(rows, first, last, works)
                 fastest, largest = max(fastest, speed), max(largest, increment)

@@ -31,6 +31,7 @@ from materials import (
     SymmetricTensor,
     after_closing,
     assembled_stress,
+    cam_clay_small_step,
     cam_clay_step,
     deviator,
     deviatoric_stress,
@@ -111,6 +112,30 @@ def update(
     return assembled_stress(new.mean_pressure, new.deviator), State(preconsolidation_pressure, 0.0)
 
 
+def small_step(
+    stress: SymmetricTensor,
+    strain_rate: SymmetricTensor,
+    density: float,
+    state: State,
+    parameters: Parameters,
+    dt: float,
+) -> tuple[SymmetricTensor, State, bool]:
+    """The same for a small step of a point that is in contact and stays so."""
+    smallest = parameters.stress_free_pressure
+    start_pressure = pressure(stress)
+    new = cam_clay_small_step(
+        max(start_pressure, smallest),
+        deviator(stress),
+        volumetric_strain_rate(strain_rate) * dt,
+        scaled(deviator(strain_rate), dt),
+        state.preconsolidation_pressure,
+        constants_of(parameters),
+    )
+    in_contact = min(start_pressure, new.mean_pressure, 0.5 * new.preconsolidation_pressure) >= smallest
+    succeeded = new.succeeded and in_contact and state.gap == 0.0
+    return assembled_stress(new.mean_pressure, new.deviator), State(new.preconsolidation_pressure, 0.0), succeeded
+
+
 @pointwise
 def constants_of(parameters: Parameters) -> CamClay:
     """M, lambda, kappa and nu."""
@@ -163,6 +188,7 @@ LAW = Law(
     update=update,
     sound_speed=sound_speed,
     contradiction=contradiction,
+    small_step=small_step,
     parameter_sets={
         "paper": ParameterSet(PAPER, "Table 1, OCR = 1", density_on_compression_line),
         "paper_ocr4": ParameterSet(

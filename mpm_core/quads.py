@@ -1,0 +1,281 @@
+"""Four doubles side by side in a vector register, for compiled code.
+
+The transfers use them in two ways: as one quantity of four neighbouring points, which are then worked on together, and
+as four components of one grid node, which a point changes together. `transposed` leads from one to the other.
+
+Arithmetic is written as for scalars. Each lane is rounded like the scalar expression would be, so that the width of
+the machine's registers changes the time, not the result.
+"""
+
+import functools
+import math
+import operator
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import ir
+from numba.core import types
+from numba.core.cgutils import get_or_insert_function
+from numba.core.datamodel.models import PrimitiveModel
+from numba.extending import intrinsic, overload, register_model
+
+LANES = 4
+
+_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_INDEX = ir.IntType(32)
+_UNDEFINED = ir.Constant(_VECTOR, ir.Undefined)
+# Positions in memory are those of a scalar: no alignment of the whole vector is asked for.
+_ALIGNMENT = 8
+
+
+class QuadType(types.Type):
+    """The compiler's type of four doubles in a register."""
+
+    def __init__(self) -> None:
+        super().__init__(name="Quad")
+
+
+QUAD = QuadType()
+
+
+@register_model(QuadType)
+class _QuadModel(PrimitiveModel):
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, _VECTOR)
+
+
+def _shuffled(builder: Any, a: Any, b: Any, lanes: list[int]) -> Any:
+    return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(_INDEX, LANES), lanes))
+
+
+def _in_all_lanes(builder: Any, scalar: Any) -> Any:
+    first = builder.insert_element(_UNDEFINED, scalar, ir.Constant(_INDEX, 0))
+    return _shuffled(builder, first, _UNDEFINED, [0] * LANES)
+
+
+def _place(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    array = context.make_array(signature.args[0])(context, builder, arguments[0])
+    return builder.bitcast(builder.gep(array.data, [arguments[1]]), _VECTOR.as_pointer())
+
+
+@intrinsic
+def _quad_at(typing_context: Any, array: Any, position: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.load(_place(context, builder, signature, arguments), align=_ALIGNMENT)
+
+    return QUAD(array, position), generate
+
+
+@intrinsic
+def _put_quad(typing_context: Any, array: Any, position: Any, quad: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        builder.store(arguments[2], _place(context, builder, signature, arguments), align=_ALIGNMENT)
+        return context.get_dummy_value()
+
+    return types.void(array, position, QUAD), generate
+
+
+@intrinsic
+def _filled(typing_context: Any, scalar: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return _in_all_lanes(builder, arguments[0])
+
+    return QUAD(types.float64), generate
+
+
+@intrinsic
+def _fused(typing_context: Any, factor: Any, a: Any, b: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        fma = get_or_insert_function(builder.module, ir.FunctionType(_VECTOR, [_VECTOR] * 3), f"llvm.fma.v{LANES}f64")
+        return builder.call(fma, [_in_all_lanes(builder, arguments[0]), arguments[1], arguments[2]])
+
+    return QUAD(types.float64, QUAD, QUAD), generate
+
+
+@intrinsic
+def _transposed(typing_context: Any, a: Any, b: Any, c: Any, d: Any) -> Any:
+    result = types.UniTuple(QUAD, LANES)
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        a, b, c, d = arguments
+        low_ab, high_ab = _shuffled(builder, a, b, [0, 4, 2, 6]), _shuffled(builder, a, b, [1, 5, 3, 7])
+        low_cd, high_cd = _shuffled(builder, c, d, [0, 4, 2, 6]), _shuffled(builder, c, d, [1, 5, 3, 7])
+        rows = [
+            _shuffled(builder, low_ab, low_cd, [0, 1, 4, 5]),
+            _shuffled(builder, high_ab, high_cd, [0, 1, 4, 5]),
+            _shuffled(builder, low_ab, low_cd, [2, 3, 6, 7]),
+            _shuffled(builder, high_ab, high_cd, [2, 3, 6, 7]),
+        ]
+        return context.make_tuple(builder, result, rows)
+
+    return result(QUAD, QUAD, QUAD, QUAD), generate
+
+
+@intrinsic
+def _first_lanes(typing_context: Any, quad: Any, count: Any, otherwise: Any) -> Any:
+    numbers = ir.Constant(_VECTOR, [float(number) for number in range(LANES)])
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        quad, count, otherwise = arguments
+        inside = builder.fcmp_ordered("<", numbers, _in_all_lanes(builder, count))
+        return builder.select(inside, quad, _in_all_lanes(builder, otherwise))
+
+    return QUAD(QUAD, types.float64, types.float64), generate
+
+
+@intrinsic
+def _truncated(typing_context: Any, quad: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        name = f"llvm.trunc.v{LANES}f64"
+        function = get_or_insert_function(builder.module, ir.FunctionType(_VECTOR, [_VECTOR]), name)
+        return builder.call(function, [arguments[0]])
+
+    return QUAD(QUAD), generate
+
+
+@intrinsic
+def _where_equal(typing_context: Any, a: Any, b: Any, then: Any, otherwise: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        a, b, then, otherwise = arguments
+        return builder.select(builder.fcmp_ordered("==", a, b), then, otherwise)
+
+    return QUAD(QUAD, QUAD, QUAD, QUAD), generate
+
+
+def _smaller_of(builder: Any, a: Any, b: Any) -> Any:
+    return builder.select(builder.fcmp_ordered("<", b, a), b, a)
+
+
+def _larger_of(builder: Any, a: Any, b: Any) -> Any:
+    return builder.select(builder.fcmp_ordered(">", b, a), b, a)
+
+
+def _reduced(build: Callable[[Any, Any, Any], Any]) -> Any:
+    """One number from the lanes of a quad, taken in their order."""
+
+    @intrinsic
+    def reduction(typing_context: Any, quad: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            numbers = [builder.extract_element(arguments[0], ir.Constant(_INDEX, k)) for k in range(LANES)]
+            return functools.reduce(lambda a, b: build(builder, a, b), numbers)
+
+        return types.float64(QUAD), generate
+
+    return reduction
+
+
+def _arithmetic(build: Callable[[Any, Any, Any], Any]) -> Any:
+    """An operation of two quads in each lane."""
+
+    @intrinsic
+    def operation(typing_context: Any, a: Any, b: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return build(builder, arguments[0], arguments[1])
+
+        return QUAD(QUAD, QUAD), generate
+
+    return operation
+
+
+_added = _arithmetic(lambda builder, a, b: builder.fadd(a, b))
+_subtracted = _arithmetic(lambda builder, a, b: builder.fsub(a, b))
+_multiplied = _arithmetic(lambda builder, a, b: builder.fmul(a, b))
+_divided = _arithmetic(lambda builder, a, b: builder.fdiv(a, b))
+_lesser = _arithmetic(_smaller_of)
+_greater = _arithmetic(_larger_of)
+
+
+def as_quad(a: Any) -> Any:
+    """A quad as it is, or a quad of a number; for compiled code."""
+    raise NotImplementedError
+
+
+@overload(as_quad)
+def _choose_as_quad(a):  # type: ignore[no-untyped-def]
+    if isinstance(a, QuadType):
+        return lambda a: a
+    return lambda a: _filled(float(a))
+
+
+def _operator(symbol: Callable[..., Any], operation: Any) -> None:
+    """Let an operator take quads, and a quad with a number on either side."""
+
+    @overload(symbol)
+    def chosen(a, b):  # type: ignore[no-untyped-def]
+        if isinstance(a, QuadType) or isinstance(b, QuadType):
+            return lambda a, b: operation(as_quad(a), as_quad(b))
+        return None
+
+
+for _symbol, _operation in (
+    (operator.add, _added),
+    (operator.sub, _subtracted),
+    (operator.mul, _multiplied),
+    (operator.truediv, _divided),
+):
+    _operator(_symbol, _operation)
+
+# (array, position) -> the four numbers from a position on
+quad_at: Callable[..., Any] = _quad_at
+# (array, position, quad) -> None; stores four numbers from a position on
+put_quad: Callable[..., None] = _put_quad
+# (number) -> a quad of it
+filled: Callable[..., Any] = _filled
+# (number, a, b) -> number * a + b, rounded once
+scaled_sum: Callable[..., Any] = _fused
+# (a, b, c, d) -> four quads, of the first lanes, the second lanes and so on
+transposed: Callable[..., Any] = _transposed
+# (quad, count, otherwise) -> the first lanes of a quad, and another number in the rest
+first_lanes: Callable[..., Any] = _first_lanes
+# (quad) -> the sum, the smallest and the largest of its numbers
+total: Callable[..., float] = _reduced(lambda builder, a, b: builder.fadd(a, b))
+smallest: Callable[..., float] = _reduced(_smaller_of)
+largest: Callable[..., float] = _reduced(_larger_of)
+
+
+def truncated(a: Any) -> Any:
+    """Number or quad without what follows the point."""
+    return math.trunc(a)
+
+
+def lesser(a: Any, b: Any) -> Any:
+    """The smaller of two numbers or quads, a where b is not a number."""
+    return b if b < a else a
+
+
+def greater(a: Any, b: Any) -> Any:
+    """The larger of two numbers or quads, a where b is not a number."""
+    return b if b > a else a
+
+
+def where_equal(a: Any, b: Any, then: Any, otherwise: Any) -> Any:
+    """`then` where a = b, for numbers or quads."""
+    return then if a == b else otherwise
+
+
+@overload(truncated)
+def _choose_truncated(a):  # type: ignore[no-untyped-def]
+    if isinstance(a, QuadType):
+        return lambda a: _truncated(a)
+    return lambda a: math.floor(a) if a > 0.0 else math.ceil(a)
+
+
+@overload(lesser)
+def _choose_lesser(a, b):  # type: ignore[no-untyped-def]
+    if isinstance(a, QuadType) or isinstance(b, QuadType):
+        return lambda a, b: _lesser(as_quad(a), as_quad(b))
+    return lambda a, b: b if b < a else a
+
+
+@overload(greater)
+def _choose_greater(a, b):  # type: ignore[no-untyped-def]
+    if isinstance(a, QuadType) or isinstance(b, QuadType):
+        return lambda a, b: _greater(as_quad(a), as_quad(b))
+    return lambda a, b: b if b > a else a
+
+
+@overload(where_equal)
+def _choose_where_equal(a, b, then, otherwise):  # type: ignore[no-untyped-def]
+    if isinstance(a, QuadType):
+        return lambda a, b, then, otherwise: _where_equal(a, as_quad(b), as_quad(then), as_quad(otherwise))
+    return lambda a, b, then, otherwise: then if a == b else otherwise
