@@ -10,6 +10,10 @@ from typing import NamedTuple
 from materials.pointwise import pointwise
 
 
+# Times a third is a fraction of the time of a division by three.
+THIRD = 1.0 / 3.0
+
+
 class SymmetricTensor(NamedTuple):
     """The six independent components of a symmetric 3 x 3 tensor (stress [Pa] or strain rate [1/s])."""
 
@@ -82,14 +86,14 @@ def determinant(a: SymmetricTensor) -> float:
 @pointwise
 def deviator(a: SymmetricTensor) -> SymmetricTensor:
     """A - tr(a)/3 1."""
-    mean = trace(a) / 3.0
+    mean = trace(a) * THIRD
     return SymmetricTensor(a.xx - mean, a.yy - mean, a.zz - mean, a.xy, a.yz, a.xz)
 
 
 @pointwise
 def pressure(stress: SymmetricTensor) -> float:
     """P = -tr(sigma)/3 [Pa], compression-positive."""
-    return -trace(stress) / 3.0
+    return trace(stress) * -THIRD
 
 
 @pointwise

@@ -146,12 +146,13 @@ def ordered_bits(value):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
-def bring_forward(rows, first, last, dt, exchange, closings, works, keeps_shear_strain):  # type: ignore[no-untyped-def]
+def bring_forward(rows, first, last, dt, exchange, room, keeps_shear_strain):  # type: ignore[no-untyped-def]
     """Rotate the stress and bring the density to the end of the step; returns the largest volumetric increment.
 
-    `closings` receives the isotropic strain rate of points without contact, `works` the power of the old stress over
-    mass.
+    The room receives the isotropic strain rate of points without contact, the power of the old stress over mass, and
+    the new volume over mass.
     """
+    closings, works, volumes = room
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
     density, around, shear_strain = rows[DENSITY], rows[DENSITY_AROUND], rows[SHEAR_STRAIN]
@@ -164,9 +165,13 @@ def bring_forward(rows, first, last, dt, exchange, closings, works, keeps_shear_
         half_increment = 0.5 * (dt * trace(motion) - closing)
         xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
         closings[p - first] = closing * (-1.0 / (3.0 * dt))
-        works[p - first] = (xx * motion.xx + yy * motion.yy + 2.0 * xy * motion.xy) / density[p]
+        # rho (1 - h)/(1 + h), and both volumes, from a single division
+        grown, shrunk = 1.0 + half_increment, 1.0 - half_increment
+        inverse = 1.0 / (density[p] * grown * shrunk)
+        works[p - first] = (xx * motion.xx + yy * motion.yy + 2.0 * xy * motion.xy) * (inverse * grown * shrunk)
+        volumes[p - first] = inverse * grown * grown
         sxx[p], syy[p], sxy[p] = xx, yy, xy
-        density[p] *= (1.0 - half_increment) / (1.0 + half_increment)
+        density[p] *= density[p] * shrunk * shrunk * inverse
         if keeps_shear_strain:
             shear_strain[p] += dt * shear_rate
         largest = max(largest, ordered_bits(abs(2.0 * half_increment)))
@@ -174,13 +179,14 @@ def bring_forward(rows, first, last, dt, exchange, closings, works, keeps_shear_
 
 
 @register_jitable
-def work_done(rows, first, last, works):  # type: ignore[no-untyped-def]
+def work_done(rows, first, last, room):  # type: ignore[no-untyped-def]
     """The mean of the powers of the old and the new stress over mass, summed over the points [W/kg]."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-    sxx, syy, sxy, density = rows[SXX], rows[SYY], rows[SXY], rows[DENSITY]
+    sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
+    _, works, volumes = room
     for p in range(first, last):
         power = sxx[p] * lxx[p] + syy[p] * lyy[p] + sxy[p] * (lxy[p] + lyx[p])
-        works[p - first] = 0.5 * (works[p - first] + power / density[p])
+        works[p - first] = 0.5 * (works[p - first] + power * volumes[p - first])
     total = 0.0
     for p in range(first, last):
         total += works[p - first]
@@ -258,19 +264,20 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
     def stress_pass(rows, point_mass, parameters, dt, exchange, reports):  # type: ignore[no-untyped-def]
         count = len(rows[X])
         for block in prange(reports.shape[0]):
-            closings, works = np.empty(GROUP), np.empty(GROUP)
+            closings = np.empty(GROUP)
+            room = (closings, np.empty(GROUP), np.empty(GROUP))
             pending = np.empty(GROUP, np.int64)
             fastest, largest, work = np.int64(0), np.int64(0), 0.0
             for start in range(block * BLOCK, min(count, (block + 1) * BLOCK), GROUP):
                 first, last = np.uint64(start), np.uint64(min(count, start + GROUP))
-                increment = bring_forward(rows, first, last, dt, exchange, closings, works, keeps_shear_strain)
+                increment = bring_forward(rows, first, last, dt, exchange, room, keeps_shear_strain)
                 if has_small_step:
                     apply_small_step(rows, first, last, closings, parameters, dt, pending)
                     apply_law_where_pending(rows, first, last, closings, parameters, dt, pending)
                 else:
                     apply_law(rows, first, last, closings, parameters, dt)
                 speed = largest_signal_speed(rows, first, last, parameters)
-                work += work_done(rows, first, last, works)
+                work += work_done(rows, first, last, room)
                 fastest, largest = max(fastest, speed), max(largest, increment)
             reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
             reports[block, INTERNAL_WORK] = point_mass * dt * work
