@@ -71,6 +71,7 @@ class PointwiseLaw:
     initial_state: Callable[..., Any]
     update: Callable[..., Any]
     sound_speed: Callable[..., Any]
+    stored_energy: Callable[..., Any] | None
     mark: str
 
 
@@ -101,7 +102,9 @@ def registered(function: Callable[..., Any]) -> Callable[..., Any]:
 def pointwise_law(law: Law) -> PointwiseLaw:
     """The functions of a law, registered with the compiler."""
     _register_helpers()
-    functions = (law.initial_state, law.update, law.sound_speed)
+    functions = [law.initial_state, law.update, law.sound_speed]
+    if law.stored_energy is not None:
+        functions.append(law.stored_energy)
     return PointwiseLaw(
         name=law.name,
         parameters=law.parameters,
@@ -109,6 +112,7 @@ def pointwise_law(law: Law) -> PointwiseLaw:
         initial_state=_register_marked(law.initial_state),
         update=_register_marked(law.update),
         sound_speed=_register_marked(law.sound_speed),
+        stored_energy=_register_marked(law.stored_energy) if law.stored_energy is not None else None,
         mark=f"{law.name}_{mark_of_sources(_source_files(functions))}",
     )
 

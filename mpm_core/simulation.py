@@ -13,6 +13,7 @@ from mpm_core.body import Body
 from mpm_core.body_force import BodyForce, scatter_body_force
 from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, join_periodic
 from mpm_core.columns import LXX, LYY, X, Y
+from mpm_core.elastic_energy import elastic_energy
 from mpm_core.fields import chosen_fields
 from mpm_core.grid import Grid, Window
 from mpm_core.held_nodes import hold_nodes
@@ -38,18 +39,28 @@ LARGEST_INCREMENT = 0.5
 
 @dataclass
 class Ledger:
-    """Energies per width [J/m]: potential energy relative to the start, works since the start."""
+    """Energies per width [J/m]: potential energy relative to the start, works since the start.
+
+    `wall_friction` is the part of `wall_work` that sliding dissipates. The initial elastic energy is NaN where a law
+    does not state its energy.
+    """
 
     kinetic: float
     initial_kinetic: float
+    initial_elastic: float
     potential: float = 0.0
     internal_work: float = 0.0
     wall_work: float = 0.0
+    wall_friction: float = 0.0
 
     @property
     def numerical_dissipation(self) -> float:
         """What is left of the balance: energy that transfers and time integration took (or gave, if negative)."""
         return self.initial_kinetic - self.kinetic - self.potential - self.internal_work - self.wall_work
+
+    def inelastic_work(self, elastic: float) -> float:
+        """What of the internal work is not in the present elastic energy [J/m]: plastic and viscous work."""
+        return self.internal_work - (elastic - self.initial_elastic)
 
 
 class Simulation:
@@ -72,6 +83,7 @@ class Simulation:
         started = time.perf_counter()
         for body in self.bodies:
             body.choose_kernels(self.basis, keeps_shear_strain="shear_strain" in self.fields)
+        initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
         self.walls = _walls(scene)
         self.body_force: BodyForce | None = None
@@ -83,7 +95,7 @@ class Simulation:
         lower, upper = np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]
         self.window = self._window_of((lower[0], lower[1]), (upper[0], upper[1]))
         kinetic = sum(0.5 * body.point_mass * float((body.velocities**2).sum()) for body in self.bodies)
-        self.ledger = Ledger(kinetic, kinetic)
+        self.ledger = Ledger(kinetic, kinetic, initial_elastic)
         self.signal_speed = self._at_least_free_fall(max(body.largest_signal_speed() for body in self.bodies))
 
     def step(self, dt: float) -> None:
@@ -99,7 +111,9 @@ class Simulation:
             join_periodic(grid.nodes, grid, axis)
         momentum.update_velocities(grid, window, self.scene.gravity, dt)
         for wall in self.walls:
-            self.ledger.wall_work += hold_at_wall(grid, wall, window)
+            taken = hold_at_wall(grid, wall, window)
+            self.ledger.wall_work += taken.work
+            self.ledger.wall_friction += taken.friction
         hold_nodes(grid, self.held_nodes)
         for body in self.bodies:
             body.from_grid(grid, dt, self._memory(dt))
@@ -112,6 +126,10 @@ class Simulation:
     def stable_step(self) -> float:
         """The largest stable step [s] at the present state: a cell over the fastest signal; infinite without any."""
         return self.grid.cell_size / self.signal_speed if self.signal_speed > 0.0 else math.inf
+
+    def elastic_energy(self) -> float:
+        """The present elastic energy of all bodies per width [J/m]; NaN where a law does not state its energy."""
+        return sum(elastic_energy(body) for body in self.bodies)
 
     def _memory(self, dt: float) -> float:
         """The share of the unresolved velocity that outlives a step."""

@@ -34,6 +34,8 @@ from materials import (
     added,
     assembled_stress,
     deviator,
+    energy_of_linear_compression,
+    energy_of_shear,
     half_norm,
     hookimpl,
     longitudinal_wave_speed,
@@ -113,6 +115,13 @@ def sound_speed(stress: SymmetricTensor, density: float, state: State, parameter
     return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
 
 
+def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Exact along isotropic paths; the deviator's part to the first order in the strain of volume."""
+    modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
+    isotropic_part = energy_of_linear_compression(pressure(stress), density, parameters.bulk_modulus)
+    return isotropic_part + energy_of_shear(stress, density, modulus)
+
+
 def contradiction(parameters: Parameters) -> str:
     """Friction may not fall with the shear rate: slow and fast flow would then be possible at one stress."""
     if parameters.dynamic_friction >= parameters.static_friction:
@@ -150,6 +159,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    stored_energy=stored_energy,
     contradiction=contradiction,
     parameter_sets={
         "paper": ParameterSet(PAPER, "Table 1; nu as for Cam Clay", density_of_table_1),
@@ -159,6 +169,7 @@ LAW = Law(
             density_of_table_1,
         ),
     },
+    hook_version=2,
 )
 
 

@@ -27,6 +27,7 @@ from materials import (
     SymmetricTensor,
     assembled_stress,
     deviator,
+    energy_of_linear_compression,
     half_norm,
     hookimpl,
     longitudinal_wave_speed,
@@ -97,6 +98,11 @@ def sound_speed(stress: SymmetricTensor, density: float, state: State, parameter
     return longitudinal_wave_speed(parameters.bulk_modulus, 0.0, density)
 
 
+def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Of the compression; the viscous stress stores nothing."""
+    return energy_of_linear_compression(pressure(stress), density, parameters.bulk_modulus)
+
+
 def contradiction(parameters: Parameters) -> str:
     """Friction may not fall with the shear rate: slow and fast flow would then be possible at one stress."""
     if parameters.dynamic_friction >= parameters.static_friction:
@@ -120,6 +126,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    stored_energy=stored_energy,
     contradiction=contradiction,
     parameter_sets={
         "paper": ParameterSet(
@@ -136,6 +143,7 @@ LAW = Law(
             density_of_table_1,
         )
     },
+    hook_version=2,
 )
 
 
