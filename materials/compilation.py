@@ -102,7 +102,7 @@ def registered(function: Callable[..., Any]) -> Callable[..., Any]:
 def pointwise_law(law: Law) -> PointwiseLaw:
     """The functions of a law, registered with the compiler."""
     _register_helpers()
-    functions = [law.initial_state, law.update, law.sound_speed]
+    functions: list[Callable[..., Any]] = [law.initial_state, law.update, law.sound_speed]
     if law.stored_energy is not None:
         functions.append(law.stored_energy)
     return PointwiseLaw(

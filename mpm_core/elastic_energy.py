@@ -18,7 +18,8 @@ from mpm_core.stress import make_state_access
 @cache
 def _sum_over_points(law: PointwiseLaw) -> Callable[..., Any]:
     """A kernel that sums a law's energy per mass over the points, in their order."""
-    stored_energy, parameter_class = law.stored_energy, law.parameters
+    stored_energy: Any = law.stored_energy
+    parameter_class = law.parameters
     mark = f"{law.mark}_{CORE_MARK}"
     load, _ = make_state_access(law.state, mark)
 

@@ -115,7 +115,7 @@ def _draw_shape(runout: Axes, heights: Axes, label: str, run: RunFolder) -> None
 
 
 def _draw_energies(axes: Axes, run: RunFolder) -> None:
-    columns = run.history.dtype.names
+    columns = run.history.dtype.names or ()
     splits_work = "elastic_energy" in columns and np.isfinite(run.history["elastic_energy"]).all()
     parts, whole = {"elastic_energy", "inelastic_work"}, {"internal_work"}
     for name in _ENERGIES:

@@ -33,7 +33,7 @@ CHECKS = (
     ),
     Check(
         "stored energy",
-        "the elastic energy that the law states is what comes back, and leaves no negative dissipation; skipped without",
+        "the elastic energy that a law states comes back, and leaves no negative dissipation; skipped without",
         energy.stored_energy,
     ),
     Check(
