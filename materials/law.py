@@ -1,4 +1,4 @@
-"""What a constitutive law is: declarations and three pure functions of scalars, and a fourth that it may have."""
+"""What a constitutive law is: declarations and three pure functions of scalars, and two more that it may have."""
 
 import inspect
 import math
@@ -16,8 +16,8 @@ from materials.tensor import SymmetricTensor, isotropic
 # version rises when a law can use something new, the oldest when a law written for an older one would go wrong.
 HOOK_VERSION = 2
 OLDEST_HOOK_VERSION = 1
-# The version in which laws could first state their elastic energy.
-STORED_ENERGY_VERSION = 2
+# The version in which laws could first state their elastic energy, and where they hold a point at a bound.
+STATEMENTS_VERSION = 2
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,8 @@ class Law:
     sound_speed     (stress, density, state, parameters) -> fastest wave speed [m/s]
     stored_energy   (stress, density, state, parameters) -> elastic energy per mass [J/kg], zero without stress; with it
                     the ledger of a run tells elastic from dissipated work; None if the law does not know it (version 2)
+    at_bound        (stress, density, state, parameters) -> whether the law holds the point at a bound of its own, such
+                    as a smallest yield surface; a run counts such points and says so; None if it never does (version 2)
     parameter_sets  named parameter sets, the first of which element tests take by default
     contradiction   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
     carries_tension whether the material may be pulled; a law of loose grains leaves it at False
@@ -65,6 +67,7 @@ class Law:
     update: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any]]
     sound_speed: Callable[[SymmetricTensor, float, Any, Any], float]
     stored_energy: Callable[[SymmetricTensor, float, Any, Any], float] | None = None
+    at_bound: Callable[[SymmetricTensor, float, Any, Any], bool] | None = None
     parameter_sets: Mapping[str, ParameterSet] = field(default_factory=dict)
     contradiction: Callable[[Any], str] = _no_contradiction
     carries_tension: bool = False
@@ -124,10 +127,11 @@ def _check_hook_version(law: Law) -> None:
         raise DeclarationError(
             f"written for hook version {written_for}; {understood}: the law has to be brought up to date"
         )
-    if law.stored_energy is not None and written_for < STORED_ENERGY_VERSION:
-        raise DeclarationError(
-            f"stored_energy belongs to hook version {STORED_ENERGY_VERSION}; the law says hook_version={written_for}"
-        )
+    for name in ("stored_energy", "at_bound"):
+        if getattr(law, name) is not None and written_for < STATEMENTS_VERSION:
+            raise DeclarationError(
+                f"{name} belongs to hook version {STATEMENTS_VERSION}; the law says hook_version={written_for}"
+            )
 
 
 def _check_one_step(law: Law, name: str, parameter_set: ParameterSet) -> None:

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from materials import InputError, SimulationError
+from mpm_core.limited import limited
 from mpm_core.output.checkpoint import CHECKPOINT_NAME, Clock, read_checkpoint
 from mpm_core.output.summary import FinalState, RunSummary, write_summary
 from mpm_core.recorder import Recorder, prepare_folder, rewind
@@ -139,6 +140,7 @@ def _summary(simulation: Simulation, recorder: Recorder, wall_time: float, compi
             kinetic_energy=ledger.kinetic,
         ),
         energy_balance_error=abs(ledger.numerical_dissipation) / released if released > 0.0 else 0.0,
+        limited=limited(simulation),
         threads=simulation.threads,
         version=version("grainlaw"),
     )

@@ -49,9 +49,9 @@ LARGEST_INCREMENT = 0.5
 class Ledger:
     """Energies per width [J/m]: potential energy relative to the start, works since the start.
 
-    Velocities are those of the middle of a step: a step accelerates them with the forces of its start, from half a step
-    before to half a step after. `last_work` is what the last step did against gravity and stress; without half of it
-    the balance would mix energies of two times, and be wrong by the work of half a step.
+    Velocities belong to the middles of steps, and so do kinetic energy, potential energy and internal work: half of the
+    last step's rise and work is still to come. A balance of energies at different times would be wrong by the work of
+    half a step.
 
     `wall_friction` is the part of `wall_work` that sliding dissipates. The initial elastic energy is NaN where a law
     does not state its energy.
@@ -64,24 +64,29 @@ class Ledger:
     internal_work: float = 0.0
     wall_work: float = 0.0
     wall_friction: float = 0.0
-    last_work: float = 0.0
+    rise_to_come: float = 0.0
+    work_to_come: float = 0.0
 
     def count(self, kinetic: float, risen: float, worked: float) -> None:
-        """Take in a step: the new kinetic energy, what rose in potential energy, and the work of the stress."""
+        """Take in a step: the new kinetic energy, the rise of the potential energy and the work of the stress."""
         self.kinetic = kinetic
-        self.potential += risen
-        self.internal_work += worked
-        self.last_work = risen + worked
+        self.potential += self.rise_to_come + 0.5 * risen
+        self.internal_work += self.work_to_come + 0.5 * worked
+        self.rise_to_come, self.work_to_come = 0.5 * risen, 0.5 * worked
 
     @property
     def numerical_dissipation(self) -> float:
         """What is left of the balance: energy that transfers and time integration took (or gave, if negative)."""
-        done = self.potential + self.internal_work - 0.5 * self.last_work
-        return self.initial_kinetic - self.kinetic - done - self.wall_work
+        return self.initial_kinetic - self.kinetic - self.potential - self.internal_work - self.wall_work
+
+    @property
+    def kinetic_at_end(self) -> float:
+        """Kinetic energy at the end of the step, with what its second half will bring [J/m]."""
+        return self.kinetic - self.rise_to_come - self.work_to_come
 
     def inelastic_work(self, elastic: float) -> float:
-        """What of the internal work is not in the present elastic energy [J/m]: plastic and viscous work."""
-        return self.internal_work - (elastic - self.initial_elastic)
+        """What of the internal work is not in the elastic energy at the end of the step [J/m]: plastic and viscous."""
+        return self.internal_work + self.work_to_come - (elastic - self.initial_elastic)
 
 
 class Simulation:
@@ -133,10 +138,11 @@ class Simulation:
     def step(self, dt: float) -> None:
         """Advance by dt [s]. Raises SimulationError naming the point where the result cannot be right.
 
-        Velocities belong to the middles of steps, so that forces act from the middle of the last step to that of this.
+        Velocities belong to the middles of steps, and the forces at the end of one step act from its middle to that of
+        the next, however long that is: with less, energy would come from steps that shrink as a body stiffens.
         """
         grid, window = self.grid, self.window
-        kick = 0.5 * ((self.last_step or dt) + dt)
+        kick = 0.5 * (self.last_step + dt)
         self._sort_if_drifted()
         momentum.clear(grid, window)
         for body in self.bodies:

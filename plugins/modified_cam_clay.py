@@ -136,6 +136,11 @@ def stored_energy(stress: SymmetricTensor, density: float, state: State, paramet
     )
 
 
+def at_bound(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> bool:
+    """The smallest yield surface, 2 `stress_free_pressure`."""
+    return state.preconsolidation_pressure <= 2.0 * parameters.stress_free_pressure
+
+
 def contradiction(parameters: Parameters) -> str:
     """Compression has to be softer than swelling."""
     if parameters.compression_index > parameters.swelling_index:
@@ -171,6 +176,7 @@ LAW = Law(
     update=update,
     sound_speed=sound_speed,
     stored_energy=stored_energy,
+    at_bound=at_bound,
     contradiction=contradiction,
     parameter_sets={
         "paper": ParameterSet(PAPER, "Table 1, OCR = 1", density_on_compression_line),

@@ -110,9 +110,10 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves."""
+    """Speed of longitudinal elastic waves; of an open point, at the density where it will be in contact."""
+    contact_density = parameters.grain_density * state.reference_solid_fraction
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
+    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, max(density, contact_density))
 
 
 def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

@@ -94,8 +94,9 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of compression waves; the viscous step limit is not covered (see the header)."""
-    return longitudinal_wave_speed(parameters.bulk_modulus, 0.0, density)
+    """Speed of compression waves, of an open point at the density of contact; without the viscous step limit."""
+    contact_density = parameters.grain_density * state.reference_solid_fraction
+    return longitudinal_wave_speed(parameters.bulk_modulus, 0.0, max(density, contact_density))
 
 
 def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

@@ -199,9 +199,12 @@ def flow_at(number: float, increment: Increment, parameters: Parameters) -> Flow
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves; (1) stiffens with p."""
+    """Speed of longitudinal elastic waves, of an open point at the density of contact; (1) stiffens with p."""
+    contact_density = parameters.grain_density * state.jamming_solid_fraction
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus + max(0.0, pressure(stress)), modulus, density)
+    return longitudinal_wave_speed(
+        parameters.bulk_modulus + max(0.0, pressure(stress)), modulus, max(density, contact_density)
+    )
 
 
 def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

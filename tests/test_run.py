@@ -29,7 +29,8 @@ __all__ = ["fresh_registry"]
 
 SUMMARY_KEYS = [
     "scene", "material", "points", "cells", "steps", "simulated_time", "wall_time", "compile_time",
-    "point_steps_per_second", "peak_memory_bytes", "final", "energy_balance_error", "threads", "version",
+    "point_steps_per_second", "peak_memory_bytes", "final", "energy_balance_error", "limited",
+    "threads", "version",
 ]  # fmt: skip
 FINAL_KEYS = ["runout", "height", "center_of_mass_height", "kinetic_energy"]
 
