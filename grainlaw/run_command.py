@@ -54,6 +54,10 @@ def _print_result(folder: Path, summary: "RunSummary") -> None:
         f"runout {final.runout:.4f} m, height {final.height:.4f} m, "
         f"centre of mass {final.center_of_mass_height:.4f} m, kinetic energy {final.kinetic_energy:.3g} J/m"
     )
+    counts = ", ".join(
+        f"{count} {name.removeprefix('points_').replace('_', ' ')}" for name, count in summary.limited.items()
+    )
+    typer.echo(f"points bounded instead of clipped: {counts}; energy balance error {summary.energy_balance_error:.2%}")
     for name in ("run.pvd", "run.vtkhdf", "history.csv", "summary.json"):
         if (folder / name).exists():
             typer.echo(f"  {folder / name}")

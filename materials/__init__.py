@@ -1,8 +1,13 @@
 """What a constitutive law is: declarations, registry, tensor algebra, compilation and element tests."""
 
-from materials.cam_clay import CamClay, CamClayStep, cam_clay_step, log_volume_of_figure_1
+from materials.cam_clay import CamClay, CamClayStep, cam_clay_step, energy_of_cam_clay, log_volume_of_figure_1
 from materials.cam_clay_small_step import SmallStep, cam_clay_small_step
 from materials.declarations import Parameter, StateVariable, checked_parameters
+from materials.elastic_energy import (
+    energy_of_linear_compression,
+    energy_of_logarithmic_compression,
+    energy_of_shear,
+)
 from materials.errors import InputError, SimulationError
 from materials.gap import Contact, after_closing
 from materials.law import HOOK_VERSION, Law, ParameterSet
@@ -59,6 +64,10 @@ __all__ = [
     "determinant",
     "deviator",
     "deviatoric_stress",
+    "energy_of_cam_clay",
+    "energy_of_linear_compression",
+    "energy_of_logarithmic_compression",
+    "energy_of_shear",
     "equivalent_shear_stress",
     "friction_of_inertial_number",
     "get_material",

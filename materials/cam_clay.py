@@ -16,6 +16,7 @@ Source: Roscoe & Burland (1968); the integration is this project's. kappa and la
 import math
 from typing import NamedTuple
 
+from materials.elastic_energy import energy_of_shear
 from materials.elementary import (
     exponential,
     exponential_near,
@@ -26,7 +27,7 @@ from materials.elementary import (
 )
 from materials.pointwise import pointwise
 from materials.rheology import shear_modulus
-from materials.tensor import SymmetricTensor, added, contraction, half_norm, scaled
+from materials.tensor import SymmetricTensor, added, contraction, half_norm, pressure, scaled
 
 TOLERANCE = 5e-11
 MAXIMUM_ITERATIONS = 100
@@ -243,6 +244,30 @@ def yield_state(theta: float, trial: Trial, constants: CamClay) -> YieldState:
     yield_function = (relaxed_squared - w) * p * p
     p_c = 2.0 * dry_ratio * p
     return YieldState(p, p_c, mean_modulus * p, n, yield_function, residual, newton_step, relaxation_rate)
+
+
+@pointwise
+def energy_of_cam_clay(
+    stress: SymmetricTensor, density: float, swelling_index: float, poisson_ratio: float, stress_free_pressure: float
+) -> float:
+    """Elastic energy per mass [J/kg] behind dp/p = d(eps_v)/kappa, from where contact begins, and of the deviator.
+
+    With L = ln(p/p_0) the isotropic part is the work int p/rho d(eps_v) from p_0 to p,
+
+        kappa/(1 - kappa) (p/rho - p_0/rho_0) = kappa p L/rho [1 - exp(-(1 - kappa) L)]/[(1 - kappa) L],
+
+    exact along any isotropic path. The deviator counts with the modulus at the present pressure, s:s/(4 G rho). An
+    elasticity with G proportional to p in rate form has no energy in the strict sense (Zytynski, Randolph, Nova & Wroth
+    1978, Int. J. Numer. Anal. Meth. Geomech. 2): around a closed elastic cycle of shear and pressure it gains or loses
+    a share of the shear part, which falls to the plastic work of a ledger.
+    """
+    p = pressure(stress)
+    if p <= 0.0:
+        return 0.0
+    log_pressure = math.log(p / stress_free_pressure)
+    growth = (1.0 - swelling_index) * log_pressure
+    isotropic_part = swelling_index * p * log_pressure / density * mean_over_path(growth, exponential(-growth))
+    return isotropic_part + energy_of_shear(stress, density, shear_modulus(p / swelling_index, poisson_ratio))
 
 
 def log_volume_of_figure_1(

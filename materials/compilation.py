@@ -72,6 +72,7 @@ class PointwiseLaw:
     update: Callable[..., Any]
     sound_speed: Callable[..., Any]
     small_step: Callable[..., Any] | None
+    stored_energy: Callable[..., Any] | None
     mark: str
 
 
@@ -102,8 +103,8 @@ def registered(function: Callable[..., Any]) -> Callable[..., Any]:
 def pointwise_law(law: Law) -> PointwiseLaw:
     """The functions of a law, registered with the compiler."""
     _register_helpers()
-    small_step = law.small_step
-    functions = [law.initial_state, law.update, law.sound_speed, *([small_step] if small_step else [])]
+    functions: list[Callable[..., Any]] = [law.initial_state, law.update, law.sound_speed]
+    optional = [function for function in (law.small_step, law.stored_energy) if function is not None]
     return PointwiseLaw(
         name=law.name,
         parameters=law.parameters,
@@ -111,8 +112,9 @@ def pointwise_law(law: Law) -> PointwiseLaw:
         initial_state=_register_marked(law.initial_state),
         update=_register_marked(law.update),
         sound_speed=_register_marked(law.sound_speed),
-        small_step=_register_marked(small_step) if small_step else None,
-        mark=f"{law.name}_{mark_of_sources(_source_files(functions))}",
+        small_step=_register_marked(law.small_step) if law.small_step is not None else None,
+        stored_energy=_register_marked(law.stored_energy) if law.stored_energy is not None else None,
+        mark=f"{law.name}_{mark_of_sources(_source_files([*functions, *optional]))}",
     )
 
 

@@ -1,4 +1,4 @@
-"""What a constitutive law is: declarations and three pure functions of scalars."""
+"""What a constitutive law is: declarations and three pure functions of scalars, and two more that it may have."""
 
 import inspect
 import math
@@ -14,8 +14,10 @@ from materials.tensor import SymmetricTensor, isotropic
 
 # The version of the interface between laws and grainlaw, and the oldest for which a law may have been written. The
 # version rises when a law can use something new, the oldest when a law written for an older one would go wrong.
-HOOK_VERSION = 1
+HOOK_VERSION = 2
 OLDEST_HOOK_VERSION = 1
+# The version in which laws could first state their elastic energy, and where they hold a point at a bound.
+STATEMENTS_VERSION = 2
 
 
 @dataclass(frozen=True)
@@ -46,13 +48,17 @@ class Law:
     sound_speed     (stress, density, state, parameters) -> fastest wave speed [m/s]
     small_step      like `update`, but -> (stress, state, succeeded): a shorter way without loops, for steps as small as
                     the core takes, that the compiler can take for many points at once; where it says that it has not
-                    succeeded, `update` is called. None for a law whose `update` is that short itself
+                    succeeded, `update` is called. None for a law whose `update` is that short itself (version 2)
+    stored_energy   (stress, density, state, parameters) -> elastic energy per mass [J/kg], zero without stress; with it
+                    the ledger of a run tells elastic from dissipated work; None if the law does not know it (version 2)
+    at_bound        (stress, density, state, parameters) -> whether the law holds the point at a bound of its own, such
+                    as a smallest yield surface; a run counts such points and says so; None if it never does (version 2)
     parameter_sets  named parameter sets, the first of which element tests take by default
     contradiction   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
     carries_tension whether the material may be pulled; a law of loose grains leaves it at False
     hook_version    version of this interface that the law was written for; a law that does not say was for version 1
 
-    The three functions take and return scalars and NamedTuples, call only `math` and functions marked with
+    The functions take and return scalars and NamedTuples, call only `math` and functions marked with
     `pointwise`, and have no side effects.
     """
 
@@ -63,6 +69,8 @@ class Law:
     initial_state: Callable[[SymmetricTensor, float, Any], Any]
     update: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any]]
     sound_speed: Callable[[SymmetricTensor, float, Any, Any], float]
+    stored_energy: Callable[[SymmetricTensor, float, Any, Any], float] | None = None
+    at_bound: Callable[[SymmetricTensor, float, Any, Any], bool] | None = None
     parameter_sets: Mapping[str, ParameterSet] = field(default_factory=dict)
     contradiction: Callable[[Any], str] = _no_contradiction
     carries_tension: bool = False
@@ -107,7 +115,7 @@ def check_law(law: Law) -> None:
     """
     if not re.fullmatch(r"[a-z][a-z0-9_]*", law.name):
         raise DeclarationError(f"the name '{law.name}' is not lower_case_with_underscores")
-    _check_hook_version(law.hook_version)
+    _check_hook_version(law)
     if not law.summary.strip():
         raise DeclarationError("no summary")
     declared_fields(law.parameters, Parameter)
@@ -116,7 +124,8 @@ def check_law(law: Law) -> None:
         _check_one_step(law, name, parameter_set)
 
 
-def _check_hook_version(written_for: int) -> None:
+def _check_hook_version(law: Law) -> None:
+    written_for = law.hook_version
     understood = f"this grainlaw understands {OLDEST_HOOK_VERSION} to {HOOK_VERSION}"
     if written_for > HOOK_VERSION:
         raise DeclarationError(f"written for hook version {written_for}; {understood}: it needs a newer grainlaw")
@@ -124,6 +133,11 @@ def _check_hook_version(written_for: int) -> None:
         raise DeclarationError(
             f"written for hook version {written_for}; {understood}: the law has to be brought up to date"
         )
+    for name in ("stored_energy", "at_bound"):
+        if getattr(law, name) is not None and written_for < STATEMENTS_VERSION:
+            raise DeclarationError(
+                f"{name} belongs to hook version {STATEMENTS_VERSION}; the law says hook_version={written_for}"
+            )
 
 
 def _check_one_step(law: Law, name: str, parameter_set: ParameterSet) -> None:
@@ -139,9 +153,11 @@ def _check_one_step(law: Law, name: str, parameter_set: ParameterSet) -> None:
         state = law.initial_state(stress, density, parameters)
         strain_rate = SymmetricTensor(-1e-3, 1e-3, 0.0, 1e-3, 0.0, 0.0)
         stress, state = law.update(stress, strain_rate, density, state, parameters, 1e-5)
-        speed = law.sound_speed(stress, density, state, parameters)
+        numbers = [law.sound_speed(stress, density, state, parameters)]
+        if law.stored_energy is not None:
+            numbers.append(law.stored_energy(stress, density, state, parameters))
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
         raise DeclarationError(f"one step with parameter set '{name}' raises {reason}") from error
-    if not all(math.isfinite(value) for value in (*stress, *state, speed)):
+    if not all(math.isfinite(value) for value in (*stress, *state, *numbers)):
         raise DeclarationError(f"one step with parameter set '{name}' gives a value that is not finite")

@@ -6,6 +6,7 @@ row is the velocity of the material at the wall, and all that a wall does is don
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -50,38 +51,48 @@ class Wall:
         return self.side in ("left", "bottom")
 
 
-def hold_at_wall(grid: Grid, wall: Wall, window: Window) -> float:
-    """Apply a wall to the new velocities of its row of nodes. Returns the energy that the wall takes [J/m].
+class TakenByWall(NamedTuple):
+    """Energies of one step [J/m]: what the wall takes in all, and what of it sliding friction dissipates.
 
-    Energy is counted as impulse times the mean of old and new velocity, which is zero for what stays at rest.
+    The rest is what the wall stops and, where it slides itself, the work that it does (negative).
+    """
+
+    work: float
+    friction: float
+
+
+def hold_at_wall(grid: Grid, wall: Wall, window: Window) -> TakenByWall:
+    """Apply a wall to the new velocities of its row of nodes. Returns the energies that the wall takes.
+
+    Energy is counted as impulse times the mean of old and new velocity, which is zero for what stays at rest; friction
+    as the tangential impulse of a friction wall times the mean sliding velocity.
     """
     index = GHOSTS if wall.is_lower else grid.cells[wall.axis] + GHOSTS
     first, last = (window.first_x, window.first_y), (window.last_x, window.last_y)
     if not first[wall.axis] <= index <= last[wall.axis]:
-        return 0.0
+        return TakenByWall(0.0, 0.0)
     other = 1 - wall.axis
     start = index * grid.strides[wall.axis] + first[other] * grid.strides[other]
     count = last[other] - first[other] + 1
     sign = 1.0 if wall.is_lower else -1.0
-    return float(
-        _hold(
-            grid.nodes,
-            start,
-            grid.strides[other],
-            count,
-            wall.axis,
-            sign,
-            int(wall.kind),
-            wall.coefficient,
-            wall.velocity,
-        )
+    work, friction = _hold(
+        grid.nodes,
+        start,
+        grid.strides[other],
+        count,
+        wall.axis,
+        sign,
+        int(wall.kind),
+        wall.coefficient,
+        wall.velocity,
     )
+    return TakenByWall(float(work), float(friction))
 
 
 @njit(cache=True)
 @named(CORE_MARK)
 def _hold(nodes, start, along, count, axis, sign, kind, friction, wall_velocity):  # type: ignore[no-untyped-def]
-    taken = 0.0
+    taken, dissipated = 0.0, 0.0
     for k in range(count):
         node = start + k * along
         mass = nodes[node + MASS]
@@ -103,7 +114,10 @@ def _hold(nodes, start, along, count, axis, sign, kind, friction, wall_velocity)
         nodes[node + NEW_VY - axis] = tangential
         taken += 0.5 * mass * (free_normal - normal) * (old_normal + normal)
         taken += 0.5 * mass * (free_tangential - tangential) * (old_tangential + tangential)
-    return taken
+        if kind == WallKind.FRICTION:
+            sliding = old_tangential + tangential - 2.0 * wall_velocity
+            dissipated += 0.5 * mass * (free_tangential - tangential) * sliding
+    return taken, dissipated
 
 
 def join_periodic(nodes: NDArray[np.float64], grid: Grid, axis: int) -> None:

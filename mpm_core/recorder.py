@@ -77,7 +77,7 @@ class Recorder:
         self.history.close()
 
     def _append_history(self, dt: float, wall_time: float) -> None:
-        shape, ledger = self.shape(), self.simulation.ledger
+        shape, ledger, elastic = self.shape(), self.simulation.ledger, self.simulation.elastic_energy()
         self.history.append(
             {
                 "t": self.simulation.time,
@@ -90,7 +90,10 @@ class Recorder:
                 "kinetic_energy": ledger.kinetic,
                 "potential_energy": ledger.potential,
                 "internal_work": ledger.internal_work,
+                "elastic_energy": elastic,
+                "inelastic_work": ledger.inelastic_work(elastic),
                 "wall_work": ledger.wall_work,
+                "wall_friction": ledger.wall_friction,
                 "numerical_dissipation": ledger.numerical_dissipation,
                 "step": self.simulation.steps,
                 "wall_time": wall_time,

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from materials import InputError, SimulationError
+from mpm_core.limited import limited
 from mpm_core.output.checkpoint import CHECKPOINT_NAME, Clock, read_checkpoint
 from mpm_core.output.summary import FinalState, RunSummary, write_summary
 from mpm_core.recorder import Recorder, prepare_folder, rewind
@@ -33,7 +34,7 @@ def run(
     """
     started = time.perf_counter()
     simulation = built_simulation(scene, threads)
-    _refuse_unstable_step(simulation)
+    _refuse_impossible_steps(simulation)
     prepare_folder(folder, scene.to_toml(), resume=resume, overwrite=overwrite)
     clock = Clock()
     if resume:
@@ -91,26 +92,27 @@ def _advance(simulation: Simulation, recorder: Recorder, started: float, progres
 def next_step(simulation: Simulation, target: float) -> tuple[float, float | None]:
     """The next time step [s], and the time of arrival if it ends on the target.
 
-    The step is the stable one times the safety factor, or the fixed one, shortened so that a whole number of equal
-    steps leads to the target. Raises SimulationError below the smallest step, or if the fixed step has become unstable.
+    The step is the adaptive one, or the fixed one, shortened so that a whole number of equal steps leads to the target.
+    Raises SimulationError below the smallest step, or if the fixed step has become unstable.
     """
     settings, stable = simulation.scene.time, simulation.stable_step()
-    largest = settings.step or settings.safety * stable
-    where = f"t = {simulation.time:.6g} s, step {simulation.steps}"
+    largest = settings.step or simulation.adaptive_step()
     if largest > stable:
+        where = f"t = {simulation.time:.6g} s, step {simulation.steps}"
         raise SimulationError(f"{where}: the fixed step {largest:.4g} s is above the stable one, now {stable:.4g} s")
-    if largest < settings.smallest_step:
-        raise SimulationError(
-            f"{where}: the stable step fell to {stable:.3g} s (signal speed {simulation.signal_speed:.3g} m/s), "
-            f"below time.smallest_step = {settings.smallest_step:g} s"
-        )
+    if largest < simulation.smallest_step:
+        simulation.fail_too_small(largest)
     remaining = target - simulation.time
     count = max(1, math.ceil(remaining / largest * (1.0 - 1e-12)))
     return remaining / count, target if count == 1 else None
 
 
-def _refuse_unstable_step(simulation: Simulation) -> None:
+def _refuse_impossible_steps(simulation: Simulation) -> None:
     step, stable = simulation.scene.time.step, simulation.stable_step()
+    first = step or simulation.adaptive_step()
+    if simulation.smallest_step > first:
+        where = f"{simulation.scene.source}: time.smallest_step = {simulation.smallest_step:g} s"
+        raise InputError(f"{where} is above the first step, {first:.6g} s; allowed: less")
     if step is not None and step > stable:
         where = f"{simulation.scene.source}: time.step = {step:g} s"
         raise InputError(f"{where} is above the stable step at the start, {stable:.6g} s")
@@ -138,6 +140,7 @@ def _summary(simulation: Simulation, recorder: Recorder, wall_time: float, compi
             kinetic_energy=ledger.kinetic,
         ),
         energy_balance_error=abs(ledger.numerical_dissipation) / released if released > 0.0 else 0.0,
+        limited=limited(simulation),
         threads=simulation.threads,
         version=version("grainlaw"),
     )

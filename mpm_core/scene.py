@@ -103,13 +103,15 @@ class TimeSection(Section):
 
     end: float = Field(gt=0, description="simulated time [s]")
     safety: float = Field(
-        default=0.4, gt=0, le=1, description="fraction of the stable step h/(c + |v|) that is taken [1]"
+        default=0.4, gt=0, le=1, description="fraction of the stable step that is taken; 1 is the limit [1]"
     )
     step: float | None = Field(
         default=None, gt=0, description="fixed step [s]; refused where it is above the stable one; default: adaptive"
     )
-    smallest_step: float = Field(
-        default=1e-10, gt=0, description="the run stops if it would have to step below this [s]"
+    smallest_step: float | None = Field(
+        default=None,
+        gt=0,
+        description="the run stops if it would have to step below this [s]; default: 1e-4 of the first step",
     )
 
 

@@ -13,6 +13,7 @@ from mpm_core.body import Body
 from mpm_core.body_force import BodyForce, scatter_body_force
 from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, join_periodic
 from mpm_core.columns import LXX, LYY, X, Y
+from mpm_core.elastic_energy import elastic_energy
 from mpm_core.fields import chosen_fields
 from mpm_core.grid import Grid, Window
 from mpm_core.grid_to_points import (
@@ -31,6 +32,14 @@ from mpm_core.scene import Scene
 from mpm_core.sorting import LONGEST_DRIFT
 from mpm_core.stress import INTERNAL_WORK, MAX_INCREMENT, MAX_SIGNAL_SPEED
 from mpm_core.threads import use_threads
+from mpm_core.time_step import (
+    LARGEST_STRAIN,
+    SMALLEST_SHARE,
+    signal_bounds,
+    signal_speeds,
+    strain_rates,
+    what_sets_the_step,
+)
 
 # A volumetric strain increment beyond which no explicit step can be right.
 LARGEST_INCREMENT = 0.5
@@ -38,18 +47,46 @@ LARGEST_INCREMENT = 0.5
 
 @dataclass
 class Ledger:
-    """Energies per width [J/m]: potential energy relative to the start, works since the start."""
+    """Energies per width [J/m]: potential energy relative to the start, works since the start.
+
+    Velocities belong to the middles of steps, and so do kinetic energy, potential energy and internal work: half of the
+    last step's rise and work is still to come. A balance of energies at different times would be wrong by the work of
+    half a step.
+
+    `wall_friction` is the part of `wall_work` that sliding dissipates. The initial elastic energy is NaN where a law
+    does not state its energy.
+    """
 
     kinetic: float
     initial_kinetic: float
+    initial_elastic: float
     potential: float = 0.0
     internal_work: float = 0.0
     wall_work: float = 0.0
+    wall_friction: float = 0.0
+    rise_to_come: float = 0.0
+    work_to_come: float = 0.0
+
+    def count(self, kinetic: float, risen: float, worked: float) -> None:
+        """Take in a step: the new kinetic energy, the rise of the potential energy and the work of the stress."""
+        self.kinetic = kinetic
+        self.potential += self.rise_to_come + 0.5 * risen
+        self.internal_work += self.work_to_come + 0.5 * worked
+        self.rise_to_come, self.work_to_come = 0.5 * risen, 0.5 * worked
 
     @property
     def numerical_dissipation(self) -> float:
         """What is left of the balance: energy that transfers and time integration took (or gave, if negative)."""
         return self.initial_kinetic - self.kinetic - self.potential - self.internal_work - self.wall_work
+
+    @property
+    def kinetic_at_end(self) -> float:
+        """Kinetic energy at the end of the step, with what its second half will bring [J/m]."""
+        return self.kinetic - self.rise_to_come - self.work_to_come
+
+    def inelastic_work(self, elastic: float) -> float:
+        """What of the internal work is not in the elastic energy at the end of the step [J/m]: plastic and viscous."""
+        return self.internal_work + self.work_to_come - (elastic - self.initial_elastic)
 
 
 class Simulation:
@@ -72,23 +109,40 @@ class Simulation:
         started = time.perf_counter()
         for body in self.bodies:
             body.choose_kernels(self.basis, keeps_shear_strain="shear_strain" in self.fields)
+        initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
         self.walls = _walls(scene)
         self.body_force: BodyForce | None = None
         self.held_nodes = np.empty(0, np.int64)
         self.time = 0.0
+        self.last_step = 0.0
         self.steps = 0
         self.drift = math.inf
         corners = [body.corners() for body in self.bodies]
         lower, upper = np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]
         self.window = self._window_of((lower[0], lower[1]), (upper[0], upper[1]))
         kinetic = sum(0.5 * body.point_mass * float((body.velocities**2).sum()) for body in self.bodies)
-        self.ledger = Ledger(kinetic, kinetic)
-        self.signal_speed = self._at_least_free_fall(max(body.largest_signal_speed() for body in self.bodies))
+        self.ledger = Ledger(kinetic, kinetic, initial_elastic)
+        self.signal_bounds = [signal_bounds(body.law, body.parameters, body.initial_density) for body in self.bodies]
+        self.measure_signals()
+        first = self.scene.time.step or self.adaptive_step()
+        self.smallest_step = self.scene.time.smallest_step or (SMALLEST_SHARE * first if first < math.inf else 0.0)
+
+    def measure_signals(self) -> None:
+        """Take what bounds the step from the points as they are: at the start, and where a program has moved them."""
+        self.signal_speed = self._signal_speed(
+            [(body.largest_signal_speed(), float(np.hypot(*body.velocities).max())) for body in self.bodies]
+        )
+        self.strain_rate = max(float(strain_rates(body).max()) for body in self.bodies)
 
     def step(self, dt: float) -> None:
-        """Advance by dt [s]. Raises SimulationError naming the point where the result cannot be right."""
+        """Advance by dt [s]. Raises SimulationError naming the point where the result cannot be right.
+
+        Velocities belong to the middles of steps, and the forces at the end of one step act from its middle to that of
+        the next, however long that is: with less, energy would come from steps that shrink as a body stiffens.
+        """
         grid, window = self.grid, self.window
+        kick = 0.5 * (self.last_step + dt)
         self._sort_if_drifted()
         momentum.clear(grid, window)
         for body in self.bodies:
@@ -97,21 +151,47 @@ class Simulation:
                 scatter_body_force(body, self.body_force(body, self.time), grid, self.basis)
         for axis in self.periodic_axes:
             join_periodic(grid.nodes, grid, axis)
-        momentum.update_velocities(grid, window, self.scene.gravity, dt)
+        momentum.update_velocities(grid, window, self.scene.gravity, kick)
         for wall in self.walls:
-            self.ledger.wall_work += hold_at_wall(grid, wall, window)
+            taken = hold_at_wall(grid, wall, window)
+            self.ledger.wall_work += taken.work
+            self.ledger.wall_friction += taken.friction
         hold_nodes(grid, self.held_nodes)
         for body in self.bodies:
             body.from_grid(grid, dt, self._memory(dt))
         for body in self.bodies:
             body.update_stress(dt, dt / self.scene.transfer.time_constant)
         self.time += dt
+        self.last_step = dt
         self.steps += 1
         self._take_reports(dt)
 
     def stable_step(self) -> float:
         """The largest stable step [s] at the present state: a cell over the fastest signal; infinite without any."""
         return self.grid.cell_size / self.signal_speed if self.signal_speed > 0.0 else math.inf
+
+    def adaptive_step(self) -> float:
+        """The safe share of the stable step [s], or less, so that no point is strained too much in one step."""
+        stable = self.scene.time.safety * self.stable_step()
+        return min(stable, LARGEST_STRAIN / self.strain_rate) if self.strain_rate > 0.0 else stable
+
+    def fail_too_small(self, step: float) -> None:
+        """Stop a run whose step would have to be this small [s], naming the point that asks for it."""
+        by_strain = step < self.scene.time.safety * self.stable_step()
+        reason = strain_rates if by_strain else signal_speeds
+        body = max(self.bodies, key=lambda found: float(reason(found).max()))
+        point, words = what_sets_the_step(body, reason)
+        asked = f"the step would have to shrink to {step:.3g} s, below the smallest one, {self.smallest_step:.3g} s"
+        self._fail(body, point, f"{asked} (time.smallest_step): {words}")
+
+    def _signal_speed(self, reported: list[tuple[float, float]]) -> float:
+        """The speed [m/s] that bounds the step, from the fastest signal and the fastest point of each body."""
+        pairs = zip(self.signal_bounds, reported, strict=True)
+        return self._at_least_free_fall(max(bounds.speed(*found) for bounds, found in pairs))
+
+    def elastic_energy(self) -> float:
+        """The present elastic energy of all bodies per width [J/m]; NaN where a law does not state its energy."""
+        return sum(elastic_energy(body) for body in self.bodies)
 
     def _memory(self, dt: float) -> float:
         """The share of the unresolved velocity that outlives a step."""
@@ -138,12 +218,22 @@ class Simulation:
         self.window = self._window_of(lower, upper)
         self.drift += dt * float(reports[:, MAX_SPEED].max())
         stress = np.concatenate([body.stress_reports for body in self.bodies])
-        self.signal_speed = self._at_least_free_fall(float(stress[:, MAX_SIGNAL_SPEED].max()))
-        ledger = self.ledger
-        ledger.kinetic = float(reports[:, KINETIC_ENERGY].sum())
-        ledger.internal_work += float(stress[:, INTERNAL_WORK].sum())
+        self.strain_rate = float(stress[:, MAX_INCREMENT].max()) / dt
+        self.signal_speed = self._signal_speed(
+            [
+                (
+                    float(body.stress_reports[:, MAX_SIGNAL_SPEED].max()),
+                    float(body.transfer_reports[:, MAX_SPEED].max()),
+                )
+                for body in self.bodies
+            ]
+        )
         moved = (float(reports[:, MOVED_X].sum()), float(reports[:, MOVED_Y].sum()))
-        ledger.potential -= dt * (self.scene.gravity[0] * moved[0] + self.scene.gravity[1] * moved[1])
+        self.ledger.count(
+            kinetic=float(reports[:, KINETIC_ENERGY].sum()),
+            risen=-dt * (self.scene.gravity[0] * moved[0] + self.scene.gravity[1] * moved[1]),
+            worked=float(stress[:, INTERNAL_WORK].sum()),
+        )
 
     def _window_of(self, lower: tuple[float, float], upper: tuple[float, float]) -> Window:
         """The nodes in reach of points between two corners; all nodes along a periodic axis."""

@@ -9,6 +9,7 @@ KERNEL_FILES = (
     "basis",
     "boundary",
     "columns",
+    "elastic_energy",
     "fields",
     "grid",
     "grid_to_points",

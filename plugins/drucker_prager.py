@@ -38,6 +38,8 @@ from materials import (
     after_closing,
     assembled_stress,
     deviator,
+    energy_of_logarithmic_compression,
+    energy_of_shear,
     half_norm,
     hookimpl,
     isotropic,
@@ -124,9 +126,16 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves."""
+    """Speed of longitudinal elastic waves; of an open point, at the density where it will be in contact."""
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
+    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density * math.exp(state.gap))
+
+
+def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Exact along isotropic paths; where plastic flow dilates, and in the deviator, to first order in strain."""
+    modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
+    isotropic_part = energy_of_logarithmic_compression(pressure(stress), density, parameters.bulk_modulus)
+    return isotropic_part + energy_of_shear(stress, density, modulus)
 
 
 def contradiction(parameters: Parameters) -> str:
@@ -151,6 +160,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    stored_energy=stored_energy,
     contradiction=contradiction,
     parameter_sets={
         "aluminium_bars": ParameterSet(
@@ -170,6 +180,7 @@ LAW = Law(
             lambda pressure, parameters: 1500.0 * math.exp(pressure / parameters.bulk_modulus),
         ),
     },
+    hook_version=2,
 )
 
 

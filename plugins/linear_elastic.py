@@ -15,9 +15,12 @@ from materials import (
     SymmetricTensor,
     added,
     deviator,
+    energy_of_logarithmic_compression,
+    energy_of_shear,
     hookimpl,
     isotropic,
     longitudinal_wave_speed,
+    pressure,
     scaled,
     shear_modulus,
     trace,
@@ -61,6 +64,13 @@ def sound_speed(stress: SymmetricTensor, density: float, state: State, parameter
     return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
 
 
+def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Exact along isotropic paths; the deviator's part to the first order in the strain of volume."""
+    modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
+    isotropic_part = energy_of_logarithmic_compression(pressure(stress), density, parameters.bulk_modulus)
+    return isotropic_part + energy_of_shear(stress, density, modulus)
+
+
 LAW = Law(
     name="linear_elastic",
     summary="linear elasticity in rate form, for verification",
@@ -69,6 +79,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    stored_energy=stored_energy,
     carries_tension=True,
     parameter_sets={
         "soft_solid": ParameterSet(
@@ -77,6 +88,7 @@ LAW = Law(
             density=lambda pressure, parameters: 1000.0,
         )
     },
+    hook_version=2,
 )
 
 

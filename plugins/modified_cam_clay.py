@@ -35,6 +35,7 @@ from materials import (
     cam_clay_step,
     deviator,
     deviatoric_stress,
+    energy_of_cam_clay,
     hookimpl,
     isotropic,
     log_volume_of_figure_1,
@@ -153,6 +154,18 @@ def sound_speed(stress: SymmetricTensor, density: float, state: State, parameter
     return longitudinal_wave_speed(bulk_modulus, shear_modulus(bulk_modulus, parameters.poisson_ratio), density)
 
 
+def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Exact along isotropic paths; see `energy_of_cam_clay` for the deviator."""
+    return energy_of_cam_clay(
+        stress, density, parameters.swelling_index, parameters.poisson_ratio, parameters.stress_free_pressure
+    )
+
+
+def at_bound(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> bool:
+    """The smallest yield surface, 2 `stress_free_pressure`."""
+    return state.preconsolidation_pressure <= 2.0 * parameters.stress_free_pressure
+
+
 def contradiction(parameters: Parameters) -> str:
     """Compression has to be softer than swelling."""
     if parameters.compression_index > parameters.swelling_index:
@@ -187,6 +200,8 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    stored_energy=stored_energy,
+    at_bound=at_bound,
     contradiction=contradiction,
     small_step=small_step,
     parameter_sets={
@@ -195,6 +210,7 @@ LAW = Law(
             PAPER._replace(overconsolidation_ratio=4.0), "Table 1, OCR = 4", density_on_compression_line
         ),
     },
+    hook_version=2,
 )
 
 

@@ -34,6 +34,8 @@ from materials import (
     added,
     assembled_stress,
     deviator,
+    energy_of_logarithmic_compression,
+    energy_of_shear,
     half_norm,
     hookimpl,
     isotropic,
@@ -103,9 +105,16 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves."""
+    """Speed of longitudinal elastic waves; of an open point, at the density where it will be in contact."""
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
+    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, max(density, state.critical_density))
+
+
+def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Exact along isotropic paths; the deviator's part to the first order in the strain of volume."""
+    modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
+    isotropic_part = energy_of_logarithmic_compression(pressure(stress), density, parameters.bulk_modulus)
+    return isotropic_part + energy_of_shear(stress, density, modulus)
 
 
 def contradiction(parameters: Parameters) -> str:
@@ -141,6 +150,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    stored_energy=stored_energy,
     contradiction=contradiction,
     parameter_sets={
         "glass_beads": ParameterSet(
@@ -156,6 +166,7 @@ LAW = Law(
         ),
         "paper": ParameterSet(PAPER, "constants of `mu_i_lc`, Table 1 of its source", density_above_critical),
     },
+    hook_version=2,
 )
 
 

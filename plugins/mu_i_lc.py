@@ -34,6 +34,8 @@ from materials import (
     added,
     assembled_stress,
     deviator,
+    energy_of_linear_compression,
+    energy_of_shear,
     half_norm,
     hookimpl,
     longitudinal_wave_speed,
@@ -108,9 +110,17 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves."""
+    """Speed of longitudinal elastic waves; of an open point, at the density where it will be in contact."""
+    contact_density = parameters.grain_density * state.reference_solid_fraction
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
+    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, max(density, contact_density))
+
+
+def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Exact along isotropic paths; the deviator's part to the first order in the strain of volume."""
+    modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
+    isotropic_part = energy_of_linear_compression(pressure(stress), density, parameters.bulk_modulus)
+    return isotropic_part + energy_of_shear(stress, density, modulus)
 
 
 def contradiction(parameters: Parameters) -> str:
@@ -150,6 +160,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    stored_energy=stored_energy,
     contradiction=contradiction,
     parameter_sets={
         "paper": ParameterSet(PAPER, "Table 1; nu as for Cam Clay", density_of_table_1),
@@ -159,6 +170,7 @@ LAW = Law(
             density_of_table_1,
         ),
     },
+    hook_version=2,
 )
 
 

@@ -27,6 +27,7 @@ from materials import (
     SymmetricTensor,
     assembled_stress,
     deviator,
+    energy_of_linear_compression,
     half_norm,
     hookimpl,
     longitudinal_wave_speed,
@@ -93,8 +94,14 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of compression waves; the viscous step limit is not covered (see the header)."""
-    return longitudinal_wave_speed(parameters.bulk_modulus, 0.0, density)
+    """Speed of compression waves, of an open point at the density of contact; without the viscous step limit."""
+    contact_density = parameters.grain_density * state.reference_solid_fraction
+    return longitudinal_wave_speed(parameters.bulk_modulus, 0.0, max(density, contact_density))
+
+
+def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Of the compression; the viscous stress stores nothing."""
+    return energy_of_linear_compression(pressure(stress), density, parameters.bulk_modulus)
 
 
 def contradiction(parameters: Parameters) -> str:
@@ -120,6 +127,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    stored_energy=stored_energy,
     contradiction=contradiction,
     parameter_sets={
         "paper": ParameterSet(
@@ -136,6 +144,7 @@ LAW = Law(
             density_of_table_1,
         )
     },
+    hook_version=2,
 )
 
 

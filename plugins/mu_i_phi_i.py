@@ -42,6 +42,8 @@ from materials import (
     added,
     assembled_stress,
     deviator,
+    energy_of_linear_compression,
+    energy_of_shear,
     friction_of_inertial_number,
     half_norm,
     hookimpl,
@@ -197,9 +199,19 @@ def flow_at(number: float, increment: Increment, parameters: Parameters) -> Flow
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves; (1) stiffens with p."""
+    """Speed of longitudinal elastic waves, of an open point at the density of contact; (1) stiffens with p."""
+    contact_density = parameters.grain_density * state.jamming_solid_fraction
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus + max(0.0, pressure(stress)), modulus, density)
+    return longitudinal_wave_speed(
+        parameters.bulk_modulus + max(0.0, pressure(stress)), modulus, max(density, contact_density)
+    )
+
+
+def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Exact along isotropic paths; with dilatancy, and in the deviator, to the first order in the strain of volume."""
+    modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
+    isotropic_part = energy_of_linear_compression(pressure(stress), density, parameters.bulk_modulus)
+    return isotropic_part + energy_of_shear(stress, density, modulus)
 
 
 def contradiction(parameters: Parameters) -> str:
@@ -244,6 +256,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    stored_energy=stored_energy,
     contradiction=contradiction,
     parameter_sets={
         "dem_shear": ParameterSet(
@@ -265,6 +278,7 @@ LAW = Law(
             density_of_slow_flow,
         ),
     },
+    hook_version=2,
 )
 
 

@@ -32,6 +32,7 @@ from materials import (
     pressure,
     scaled,
     shear_modulus,
+    trace,
 )
 
 # Halvings of the bracket of ln J at the start, down to round-off.
@@ -108,6 +109,16 @@ def sound_speed(stress: SymmetricTensor, density: float, state: State, parameter
     return math.sqrt(max(stiffness, modulus) / (density * state.volume_ratio))
 
 
+def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """W/rho_0, exact."""
+    modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
+    lame = parameters.bulk_modulus - 2.0 / 3.0 * modulus
+    log_volume = math.log(state.volume_ratio)
+    stretch = trace(left_cauchy_green(stress, state.volume_ratio, parameters)) - 3.0
+    energy = 0.5 * modulus * (stretch - 2.0 * log_volume) + 0.5 * lame * log_volume * log_volume
+    return energy / state.reference_density
+
+
 LAW = Law(
     name="neo_hookean",
     summary="compressible Neo-Hookean elasticity at large strain, for verification",
@@ -117,6 +128,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    stored_energy=stored_energy,
     parameter_sets={
         "vortex": ParameterSet(
             Parameters(bulk_modulus=1e6 / (3.0 * (1.0 - 2.0 * 0.3)), poisson_ratio=0.3),
@@ -125,6 +137,7 @@ LAW = Law(
             density=lambda pressure, parameters: 1000.0,
         )
     },
+    hook_version=2,
 )
 
 

@@ -24,6 +24,7 @@ from materials import (
     SymmetricTensor,
     assembled_stress,
     deviator,
+    energy_of_linear_compression,
     hookimpl,
     isotropic,
     longitudinal_wave_speed,
@@ -73,6 +74,11 @@ def sound_speed(stress: SymmetricTensor, density: float, state: State, parameter
     return longitudinal_wave_speed(parameters.bulk_modulus, 0.0, state.reference_density)
 
 
+def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
+    """Of the compression; the viscous stress stores nothing."""
+    return energy_of_linear_compression(pressure(stress), density, parameters.bulk_modulus)
+
+
 LAW = Law(
     name="newtonian",
     summary="weakly compressible Newtonian fluid, for verification",
@@ -81,6 +87,7 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    stored_energy=stored_energy,
     parameter_sets={
         "glycerol": ParameterSet(
             Parameters(viscosity=1.41, bulk_modulus=1e5),
@@ -88,6 +95,7 @@ LAW = Law(
             lambda pressure, parameters: 1261.0 * (1.0 + pressure / parameters.bulk_modulus),
         )
     },
+    hook_version=2,
 )
 
 

@@ -25,6 +25,7 @@ RETURNED = "    return assembled_stress(p, scaled(trial, shear_stress / max(tria
 MISTAKES = {
     "dissipation": (RETURNED, RETURNED.replace("scaled(trial, ", "scaled(deviator(strain_rate), -dt * modulus / ")),
     "sound speed": ("parameters.bulk_modulus + max(0.0, pressure(stress))", "0.1 * parameters.bulk_modulus"),
+    "stored energy": ("return isotropic_part + energy_of_shear", "return isotropic_part + 1.1 * energy_of_shear"),
     "pure": (STRENGTH, STRENGTH + "    CALLS.append(p)\n    strength *= 1.0 + 1e-3 * len(CALLS)\n"),
     "finite": (STRENGTH, STRENGTH + "    p = p * p / p if p >= 0.0 else p\n"),
     "objectivity": (STRENGTH, STRENGTH + "    strength *= 1.0 + 0.1 * abs(stress.xy) / (abs(stress.xy) + 100.0)\n"),
@@ -82,7 +83,7 @@ def test_header_without_equations_is_caught(tmp_path):
 
 
 def test_tension_may_be_declared(tmp_path):
-    text = SOUND_LAW.replace(*MISTAKES["tension"]).replace("hook_version=1", "hook_version=1, carries_tension=True")
+    text = SOUND_LAW.replace(*MISTAKES["tension"]).replace("hook_version=2", "hook_version=2, carries_tension=True")
     outcome = verdicts(law_of(text, tmp_path))["tension"]
     assert (outcome.verdict, outcome.reason.startswith("declared")) == ("pass", True)
 

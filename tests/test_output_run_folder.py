@@ -25,6 +25,7 @@ SUMMARY = {
     "peak_memory_bytes": 2**28,
     "final": {"runout": 0.66, "height": 0.32, "center_of_mass_height": 0.12, "kinetic_energy": 1e-6},
     "energy_balance_error": 1e-3,
+    "limited": {"points_without_stress": 12, "points_at_a_wall": 0, "points_at_a_bound_of_their_law": 0},
     "threads": 2,
     "version": "0.1.0",
 }

@@ -29,7 +29,8 @@ __all__ = ["fresh_registry"]
 
 SUMMARY_KEYS = [
     "scene", "material", "points", "cells", "steps", "simulated_time", "wall_time", "compile_time",
-    "point_steps_per_second", "peak_memory_bytes", "final", "energy_balance_error", "threads", "version",
+    "point_steps_per_second", "peak_memory_bytes", "final", "energy_balance_error", "limited",
+    "threads", "version",
 ]  # fmt: skip
 FINAL_KEYS = ["runout", "height", "center_of_mass_height", "kinetic_energy"]
 
@@ -213,7 +214,9 @@ def test_a_step_that_becomes_unstable_stops_the_run(tmp_path, monkeypatch, capsy
 def test_a_stable_step_that_vanishes_stops_the_run(tmp_path, monkeypatch, capsys, fresh_registry):
     faster = "if trace(stress) < -300.0:\n        return 1e12"
     error, _ = fails(monkeypatch, capsys, tmp_path, FALLING_SPRING, {}, sound_speed=faster)
-    assert re.search(r"the stable step fell to \S+ s \(signal speed 1e\+12 m/s\), below time\.smallest_step", error)
+    asked = r"the step would have to shrink to \S+ s, below the smallest one, \S+ s \(time\.smallest_step\)"
+    assert re.search(rf"point \d+ of \S+ \(\S+\) at .* m: {asked}: sound speed 1e\+12 m/s", error)
+    assert "last checkpoint: " in error
 
 
 def test_a_point_that_leaves_through_a_removed_wall_stops_the_run():

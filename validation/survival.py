@@ -1,10 +1,6 @@
 """What a hard case must survive, and what was limited on the way.
 
-The core clips nothing: a run that goes wrong stops. What it bounds is counted here, at the end of a run:
-
-- points without stress, which are free to open and close (`numerics`: points without contact),
-- points nearer to a wall than a twentieth of a cell, whose stiffness is bounded (`mpm_core.basis`),
-- points of Modified Cam Clay whose yield surface has shrunk to its smallest size.
+The core clips nothing: a run that goes wrong stops. What it bounds (`mpm_core.limited`) is counted at the end of a run.
 """
 
 from collections.abc import Mapping
@@ -13,9 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from materials import SimulationError
-from mpm_core.basis import SMALLEST_MOMENT_AT_WALL
-from mpm_core.body import Body
-from mpm_core.columns import SXX, SYY, X, Y
+from mpm_core.limited import limited
 from mpm_core.observables import PileShape, pile_shape
 from mpm_core.simulation import Simulation
 from validation.case import Measurement, upper_bound
@@ -96,33 +90,6 @@ def _result(simulation: Simulation, end: float, created: float, message: str) ->
     )
 
 
-def limited(simulation: Simulation) -> dict[str, int]:
-    """Counts of points for which something is bounded now."""
-    counts = {
-        "without stress": sum(
-            int(((body.points[SXX] == 0.0) & (body.points[SYY] == 0.0)).sum()) for body in simulation.bodies
-        ),
-        "at a wall": sum(_at_walls(simulation, body) for body in simulation.bodies),
-    }
-    smallest = [
-        int((body.state("preconsolidation_pressure") <= 2.0 * body.parameters.stress_free_pressure).sum())
-        for body in simulation.bodies
-        if "preconsolidation_pressure" in body.law.state._fields
-    ]
-    return {**counts, "at the smallest yield surface": sum(smallest)} if smallest else counts
-
-
-def _at_walls(simulation: Simulation, body: Body) -> int:
-    near = np.zeros(body.count, np.bool_)
-    for axis, row in ((0, X), (1, Y)):
-        if axis not in simulation.periodic_axes:
-            distance = np.minimum(
-                body.points[row] - simulation.grid.lower[axis], simulation.grid.upper[axis] - body.points[row]
-            )
-            near |= distance < SMALLEST_MOMENT_AT_WALL * simulation.grid.cell_size
-    return int(near.sum())
-
-
 def survival(label: str, found: Trial) -> tuple[Measurement, ...]:
     """The end is reached, all is finite, no energy comes from nowhere."""
     return (
@@ -143,7 +110,9 @@ def notes(trials: Mapping[str, Trial]) -> tuple[str, ...]:
 
 
 def _note(label: str, found: Trial) -> str:
-    counts = ", ".join(f"{count} {name}" for name, count in found.limited.items())
+    counts = ", ".join(
+        f"{count} {name.removeprefix('points_').replace('_', ' ')}" for name, count in found.limited.items()
+    )
     shape = f"half width {found.shape.runout:.3f} m, top {found.shape.height:.3f} m"
     stopped = f"; stopped: {found.message}" if found.message else ""
     return f"{label}: {shape}, {found.steps} steps; points {counts}{stopped}"

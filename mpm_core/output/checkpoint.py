@@ -30,7 +30,9 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
         "time": simulation.time,
         "steps": simulation.steps,
         "drift": simulation.drift,
+        "last_step": simulation.last_step,
         "signal_speed": simulation.signal_speed,
+        "strain_rate": simulation.strain_rate,
     }
     with atomic.replacing(folder / CHECKPOINT_NAME) as partial, h5py.File(partial, "w") as file:
         file.attrs.update(scalars)
@@ -73,7 +75,9 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     simulation.time = float(file.attrs["time"])
     simulation.steps = int(file.attrs["steps"])
     simulation.drift = float(file.attrs["drift"])
+    simulation.last_step = float(file.attrs["last_step"])
     simulation.signal_speed = float(file.attrs["signal_speed"])
+    simulation.strain_rate = float(file.attrs["strain_rate"])
     simulation.window = Window(**_numbers(file["window"], int))
     simulation.ledger = Ledger(**_numbers(file["ledger"], float))
     clock = file["clock"].attrs

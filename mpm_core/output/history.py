@@ -34,8 +34,15 @@ HISTORY_COLUMNS = (
     HistoryColumn("center_of_mass_height", "m", "height of the centre of mass above the floor of the domain"),
     HistoryColumn("kinetic_energy", "J/m", "kinetic energy per width"),
     HistoryColumn("potential_energy", "J/m", "potential energy of gravity per width relative to the start"),
-    HistoryColumn("internal_work", "J/m", "work of the stress per width since the start"),
+    HistoryColumn("internal_work", "J/m", "work of the stress per width since the start, elastic or not"),
+    HistoryColumn(
+        "elastic_energy", "J/m", "elastic energy per width; nan where a law does not state it (`stored_energy`)"
+    ),
+    HistoryColumn(
+        "inelastic_work", "J/m", "plastic and viscous work per width since the start: internal work not stored"
+    ),
     HistoryColumn("wall_work", "J/m", "work done on the walls per width since the start: friction and what they stop"),
+    HistoryColumn("wall_friction", "J/m", "part of `wall_work` that sliding on friction walls dissipated"),
     HistoryColumn(
         "numerical_dissipation", "J/m", "energy that transfers and time integration took per width since the start"
     ),

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from matplotlib.axes import Axes
 
 from mpm_core.output.frame import Frame
@@ -22,7 +23,15 @@ from mpm_core.output.run_folder import RunFolder
 from mpm_core.output.snapshots import draw_snapshots
 
 _UNITS = {column.name: column.unit for column in HISTORY_COLUMNS}
-_ENERGIES = ("kinetic_energy", "potential_energy", "internal_work", "wall_work", "numerical_dissipation")
+_ENERGIES = (
+    "kinetic_energy",
+    "potential_energy",
+    "internal_work",
+    "elastic_energy",
+    "inelastic_work",
+    "wall_work",
+    "numerical_dissipation",
+)
 _SPREADING = 1.1
 
 
@@ -68,7 +77,7 @@ def draw_history(runs: Sequence[tuple[str, RunFolder]], path: Path) -> None:
             _draw_energies(axes, run)
             axes.set_title(label)
         panels[0].set_ylabel(quantity_label("energy since the start", _UNITS["kinetic_energy"]))
-        below.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=5, frameon=False)
+        below.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
 
 
 def write_run_pictures(folder: Path, field: str = "shear_strain") -> list[Path]:
@@ -106,7 +115,11 @@ def _draw_shape(runout: Axes, heights: Axes, label: str, run: RunFolder) -> None
 
 
 def _draw_energies(axes: Axes, run: RunFolder) -> None:
+    columns = run.history.dtype.names or ()
+    splits_work = "elastic_energy" in columns and np.isfinite(run.history["elastic_energy"]).all()
+    parts, whole = {"elastic_energy", "inelastic_work"}, {"internal_work"}
     for name in _ENERGIES:
-        axes.plot(run.history["t"], run.history[name] - run.history[name][0], label=name.replace("_", " "))
+        if name not in (whole if splits_work else parts):
+            axes.plot(run.history["t"], run.history[name] - run.history[name][0], label=name.replace("_", " "))
     axes.axhline(0.0, color="black", linewidth=0.5)
     axes.set_xlabel("$t$ [s]")

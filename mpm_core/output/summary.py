@@ -24,7 +24,8 @@ class FinalState(BaseModel):
 class RunSummary(BaseModel):
     """One run: times in seconds, memory in bytes, `energy_balance_error` relative to the energy that was released.
 
-    `material` names the law, or the laws of a scene with several, joined by commas.
+    `limited` counts what is bounded at the end instead of clipped (`mpm_core.limited`). `material` names the law, or
+    the laws of a scene with several, joined by commas.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -41,6 +42,7 @@ class RunSummary(BaseModel):
     peak_memory_bytes: NonNegativeInt
     final: FinalState
     energy_balance_error: FiniteFloat
+    limited: dict[str, NonNegativeInt]
     threads: NonNegativeInt
     version: str
 

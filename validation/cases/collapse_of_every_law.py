@@ -62,7 +62,7 @@ def collapsed(simulation: Simulation) -> Collapse:
     cost = nanoseconds_per_step(simulation)
     found = trial(simulation, REST)
     ledger = simulation.ledger
-    share = found.limited["without stress"] / body.count
+    share = found.limited["points_without_stress"] / body.count
     return Collapse(found, ledger.kinetic, -ledger.potential, volume(body) / initial, share, cost)
 
 

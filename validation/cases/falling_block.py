@@ -49,7 +49,9 @@ def free_fall(material: str, effort: Effort) -> Measurement:
     advance(simulation, FREE_FALL)
     mass = 1500.0 * SIZE * SIZE
     exact = 0.5 * mass * (GRAVITY * FREE_FALL) ** 2
-    return relative_error(f"{material}: kinetic energy of the fall", "J/m", simulation.ledger.kinetic, exact, BAND)
+    return relative_error(
+        f"{material}: kinetic energy of the fall", "J/m", simulation.ledger.kinetic_at_end, exact, BAND
+    )
 
 
 def measure(effort: Effort) -> Evidence:

@@ -115,7 +115,7 @@ def ring(cells: int, points_across_cell: int, angle: float) -> Simulation:
     body = Body("ring", like.law, like.parameters, points, mass, first_id=0)
     body.choose_kernels(simulation.basis, keeps_shear_strain=False)
     simulation.bodies = [body]
-    simulation.signal_speed = body.largest_signal_speed()
+    simulation.measure_signals()
     simulation.held_nodes = nodes_where(simulation.grid, _is_outside)
     return simulation
 

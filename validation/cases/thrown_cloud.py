@@ -45,7 +45,7 @@ def throw(simulation: Simulation, rate: float) -> None:
     body = simulation.bodies[0]
     body.points[[VX, VY]] = rate * (body.points[[X, Y]] - CENTER)
     body.points[LXX : LYY + 1] = rate * np.array([[1.0], [0.0], [0.0], [1.0]])
-    simulation.signal_speed = body.largest_signal_speed()
+    simulation.measure_signals()
 
 
 def opened(law: str, parameter_set: str, effort: Effort) -> Simulation:

@@ -31,7 +31,7 @@ def turn(simulation: Simulation, upright: Simulation) -> None:
     points[:] = model
     points[X], points[Y] = model[Y], LENGTH - model[X]
     points[SXX], points[SYY], points[SXY] = model[SYY], model[SXX], -model[SXY]
-    simulation.signal_speed = upright.signal_speed
+    simulation.measure_signals()
 
 
 def difference(material: str, effort: Effort, changes: dict[str, Any]) -> Measurement:

@@ -72,6 +72,10 @@ def units(subject: Subject) -> Outcome:
             ("the state of update", state, end.state, 0.0),
             ("sound_speed", (speed,), (expected,), 0.0),
         ]
+        if law.stored_energy is not None:
+            energy = law.stored_energy(*end, parameters)
+            expected = law.stored_energy(*call.end, subject.parameters) * factor("J/kg")
+            differences.append(("stored_energy", (energy,), (expected,), 0.0))
     for name, one, other, scale in differences:
         difference = largest_difference(tuple(one), tuple(other), scale)
         if not difference <= worst:

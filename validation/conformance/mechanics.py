@@ -81,12 +81,12 @@ def dissipation(subject: Subject) -> Outcome:
     energy is not known: the work that has been done on the point, plus that energy, cannot become negative.
     """
     start = subject.at_rest(subject.pressure)
-    stored = _recovered(subject, start)
+    stored = recovered_work(subject, start)
     random = np.random.default_rng(0)
     most_given = 0.0
     for path in range(3 * subject.effort):
         done, turned_over = 0.0, 0.0
-        increments = _closed_path(random, subject.elastic_strain, loops=3)
+        increments = closed_path(random, subject.elastic_strain, loops=3)
         for _, work in subject.work(start, increments, DT * 10.0 ** (-(path % 3))):
             done += work
             turned_over += abs(work)
@@ -143,7 +143,7 @@ def _tensor(matrix: Array) -> SymmetricTensor:
     return SymmetricTensor(*(float(matrix[index]) for index in COMPONENTS))
 
 
-def _recovered(subject: Subject, start: PointState) -> float:
+def recovered_work(subject: Subject, start: PointState) -> float:
     """The work that isotropic unloading returns until the pressure is gone [J/m3]."""
     increment = 0.02 * subject.elastic_strain / 3.0
     increments = np.tile([increment, increment, increment, 0.0, 0.0, 0.0], (2000, 1))
@@ -155,7 +155,7 @@ def _recovered(subject: Subject, start: PointState) -> float:
     return returned
 
 
-def _closed_path(random: np.random.Generator, elastic_strain: float, loops: int) -> Array:
+def closed_path(random: np.random.Generator, elastic_strain: float, loops: int) -> Array:
     """Strain increments, shape (steps, 6), along polygons that begin and end without strain."""
     corners = [np.zeros(6)]
     for _ in range(loops):

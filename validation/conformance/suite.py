@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from materials import Law
-from validation.conformance import code, declared, mechanics
+from validation.conformance import code, declared, energy, mechanics
 from validation.conformance.outcome import Check, Outcome
 from validation.conformance.subject import Subject
 
@@ -30,6 +30,11 @@ CHECKS = (
         "dissipation",
         "along closed paths of strain a point gives no more energy than it held at the start",
         mechanics.dissipation,
+    ),
+    Check(
+        "stored energy",
+        "the elastic energy that a law states comes back, and leaves no negative dissipation; skipped without",
+        energy.stored_energy,
     ),
     Check(
         "convergence",

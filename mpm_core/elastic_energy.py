@@ -1,0 +1,47 @@
+"""The elastic energy of a body: the law's own energy per mass, summed over the points when it is asked for."""
+
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from numba import njit
+
+from materials.compilation import PointwiseLaw, explained, named, pointwise_law
+from materials.tensor import SymmetricTensor
+from mpm_core.body import Body
+from mpm_core.columns import DENSITY, SXX, SXY, SYY, SZZ, X
+from mpm_core.sources import CORE_MARK
+from mpm_core.stress import make_state_access
+
+
+@cache
+def _sum_over_points(law: PointwiseLaw) -> Callable[..., Any]:
+    """A kernel that sums a law's energy per mass over the points, in their order."""
+    stored_energy: Any = law.stored_energy
+    parameter_class = law.parameters
+    mark = f"{law.mark}_{CORE_MARK}"
+    load, _ = make_state_access(law.state, mark)
+
+    @njit(error_model="numpy", cache=True)
+    @named(mark)
+    def sum_of_energies(rows, parameters):  # type: ignore[no-untyped-def]
+        law_parameters = parameter_class(*parameters)
+        total = 0.0
+        for p in range(len(rows[X])):
+            stress = SymmetricTensor(rows[SXX][p], rows[SYY][p], rows[SZZ][p], rows[SXY][p], 0.0, 0.0)
+            total += stored_energy(stress, rows[DENSITY][p], load(rows, p), law_parameters)
+        return total
+
+    return sum_of_energies
+
+
+def elastic_energy(body: Body) -> float:
+    """The elastic energy of a body per width [J/m]; NaN if its law does not state its energy.
+
+    Raises InputError if the law's energy does not compile.
+    """
+    if body.law.stored_energy is None:
+        return math.nan
+    kernel = _sum_over_points(pointwise_law(body.law))
+    return body.point_mass * float(explained(body.law, kernel, body.rows, tuple(body.parameters)))

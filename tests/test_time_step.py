@@ -1,0 +1,125 @@
+"""What bounds a step: the stability of a single point, contact, strain, and a floor at which runs stop."""
+
+import re
+
+import numpy as np
+import pytest
+from scenes_for_tests import BLOCK, CAM_CLAY, ELASTIC, simulation
+
+from materials import InputError, SimulationError, get_material
+from mpm_core.columns import AXX, AYY, LXX, LYY, VX, VY, X, Y
+from mpm_core.run import next_step, run
+from mpm_core.scene import Scene
+from mpm_core.time_step import LARGEST_STRAIN, SMALLEST_SHARE, signal_bounds
+
+
+def growth(poisson_ratio, share, place, steps=24):
+    """By how much a dilation of a single point grows over steps of a share of the stable one."""
+    case = simulation(
+        BLOCK,
+        {
+            "material.linear_elastic.poisson_ratio": poisson_ratio,
+            "body.0.points_per_cell": 1,
+            "body.0.shape": {"kind": "rectangle", "lower": [0.4, 0.4], "upper": [0.5, 0.5]},
+            "transfer.time_constant": 1e6,
+        },
+    )
+    (body,) = case.bodies
+    body.points[[X, Y]] = 0.4 + 0.1 * np.array(place)[:, None]
+    for row in (LXX, LYY, AXX, AYY):
+        body.points[row] = 1e-6
+    dt = share * case.stable_step()
+    energies = []
+    for _ in range(steps):
+        case.step(dt)
+        energies.append(case.ledger.kinetic + case.elastic_energy())
+    return max(energies[-6:]) / max(energies[:6])
+
+
+@pytest.mark.parametrize("poisson_ratio", [0.0, 0.2, 0.3, 0.45])
+@pytest.mark.parametrize("place", [(0.5, 0.5), (0.13, 0.4)])
+def test_the_stable_step_is_the_limit_of_a_single_point(poisson_ratio, place):
+    assert growth(poisson_ratio, 0.99, place) < 2.0
+    assert growth(poisson_ratio, 1.05, place) > 1e6
+
+
+def test_the_grid_is_stiffer_than_a_wave_by_what_the_law_says():
+    elastic = get_material("linear_elastic")
+    for ratio, expected in ((0.0, 1.0), (0.2, 1.25), (0.3, 10.0 / 7.0)):
+        found = signal_bounds(elastic, elastic.parameters(1e6, ratio), 1000.0)
+        assert found.wave_factor**2 == pytest.approx(expected, rel=1e-6)
+        assert found.contact_speed == 0.0
+    newtonian = get_material("newtonian")
+    assert signal_bounds(newtonian, newtonian.parameters(1.0, 1e5), 1000.0).wave_factor == pytest.approx(2.0**0.5)
+
+
+def cloud(speed, changes=None):
+    """A stress-free block of Cam Clay that closes in on its centre."""
+    case = simulation(
+        BLOCK,
+        {"material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay", **(changes or {})},
+    )
+    (body,) = case.bodies
+    body.points[[VX, VY]] = -speed * (body.points[[X, Y]] - np.array([[0.5], [0.4]]))
+    body.points[LXX] = body.points[LYY] = -speed
+    case.measure_signals()
+    return case
+
+
+def test_open_material_that_nothing_moves_stays_where_it_is():
+    case = cloud(0.0)
+    assert 0.0 < case.stable_step() < 1.0
+    (body,) = case.bodies
+    places = body.points[[X, Y]].copy()
+    while case.time < 0.1:
+        dt, _ = next_step(case, 0.1)
+        case.step(dt)
+    # At the edge of contact Cam Clay starts with its smallest pressure, 1 Pa.
+    np.testing.assert_allclose(body.points[[X, Y]][:, np.argsort(body.ids)], places, atol=1e-4)
+
+
+def test_a_step_strains_no_point_by_more_than_the_largest_strain():
+    case = cloud(5.0)
+    assert case.adaptive_step() == pytest.approx(LARGEST_STRAIN / 10.0)
+    assert case.adaptive_step() < 0.4 * case.stable_step()
+
+
+def test_the_smallest_step_follows_from_the_first():
+    case = simulation(BLOCK)
+    assert case.smallest_step == pytest.approx(SMALLEST_SHARE * case.adaptive_step())
+    assert simulation(BLOCK, {"time.smallest_step": 1e-6}).smallest_step == 1e-6
+
+
+def test_a_run_that_would_have_to_step_below_the_smallest_step_says_why():
+    case = simulation(BLOCK)
+    (body,) = case.bodies
+    body.points[VX, 17] = 1e8
+    case.measure_signals()
+    with pytest.raises(SimulationError) as error:
+        next_step(case, 0.1)
+    assert re.search(
+        rf"point {body.ids[17]} of body\.0 \(linear_elastic\) at \(\S+, \S+\) m: the step would have to shrink to "
+        r"\S+ s, below the smallest one, \S+ s \(time\.smallest_step\): sound speed 4\.47 m/s, speed 1e\+08 m/s",
+        str(error.value),
+    )
+    body.points[VX, 17] = 0.0
+    body.points[LXX, 3] = -1e7
+    case.measure_signals()
+    with pytest.raises(SimulationError, match=rf"point {body.ids[3]} of .*volumetric strain rate 1e\+07 1/s"):
+        next_step(case, 0.1)
+
+
+def test_a_smallest_step_above_the_first_is_refused(tmp_path):
+    scene = Scene.from_dict(BLOCK | {"time": {"end": 0.1, "smallest_step": 0.05}}, "block.toml")
+    with pytest.raises(
+        InputError, match=r"block\.toml: time\.smallest_step = 0\.05 s is above the first step, 0\.00\d+"
+    ):
+        run(scene, tmp_path / "run")
+
+
+def test_the_limit_of_a_soft_solid_does_not_depend_on_its_modulus():
+    steps = [
+        simulation(BLOCK, {"material.linear_elastic": ELASTIC | {"bulk_modulus": modulus}}).stable_step()
+        for modulus in (1e4, 4e4)
+    ]
+    assert steps[0] == pytest.approx(2.0 * steps[1], rel=1e-9)
