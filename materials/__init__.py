@@ -8,12 +8,14 @@ from materials.law import HOOK_VERSION, Law, ParameterSet
 from materials.pointwise import pointwise
 from materials.registry import get_material, hookimpl, registry
 from materials.rheology import (
+    flowing_wave_speed,
     friction_of_inertial_number,
     inertial_number,
     longitudinal_wave_speed,
     own_inertial_number_constant,
     plastic_shear_rate,
     shear_modulus,
+    stress_ratio,
 )
 from materials.tensor import (
     SymmetricTensor,
@@ -57,6 +59,7 @@ __all__ = [
     "deviator",
     "deviatoric_stress",
     "equivalent_shear_stress",
+    "flowing_wave_speed",
     "friction_of_inertial_number",
     "get_material",
     "half_norm",
@@ -73,6 +76,7 @@ __all__ = [
     "scaled",
     "shear_modulus",
     "shear_strain_rate",
+    "stress_ratio",
     "trace",
     "volumetric_strain_rate",
 ]

@@ -14,8 +14,9 @@ from materials.tensor import SymmetricTensor, isotropic
 
 # The version of the interface between laws and grainlaw, and the oldest for which a law may have been written. The
 # version rises when a law can use something new, the oldest when a law written for an older one would go wrong.
-HOOK_VERSION = 1
+HOOK_VERSION = 2
 OLDEST_HOOK_VERSION = 1
+VISCOSITY_SINCE = 2
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,10 @@ class Law:
     contradiction   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
     carries_tension whether the material may be pulled; a law of loose grains leaves it at False
     hook_version    version of this interface that the law was written for; a law that does not say was for version 1
+    viscosity       (stress, strain_rate, density, state, parameters) -> viscosity [Pa s] against plane waves, declared
+                    by a law whose stress follows the rate of strain itself. Its `sound_speed` is that of waves at a
+                    constant rate; its viscosity bounds an explicit step besides, to about rho h^2/(2 viscosity) on
+                    cells of h. Since hook version 2
 
     The three functions take and return scalars and NamedTuples, call only `math` and functions marked with
     `pointwise`, and have no side effects.
@@ -64,6 +69,7 @@ class Law:
     contradiction: Callable[[Any], str] = _no_contradiction
     carries_tension: bool = False
     hook_version: int = 1
+    viscosity: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any], float] | None = None
 
     def checked(self, values: dict[str, Any], where: str) -> Any:
         """Parameters of this law from values by name; `where` names their place in messages. Raises InputError."""
@@ -102,6 +108,8 @@ def check_law(law: Law) -> None:
     if not re.fullmatch(r"[a-z][a-z0-9_]*", law.name):
         raise DeclarationError(f"the name '{law.name}' is not lower_case_with_underscores")
     _check_hook_version(law.hook_version)
+    if law.viscosity is not None and law.hook_version < VISCOSITY_SINCE:
+        raise DeclarationError(f"declares a viscosity, which needs hook_version={VISCOSITY_SINCE}")
     if not law.summary.strip():
         raise DeclarationError("no summary")
     declared_fields(law.parameters, Parameter)

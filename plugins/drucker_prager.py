@@ -38,10 +38,10 @@ from materials import (
     after_closing,
     assembled_stress,
     deviator,
+    flowing_wave_speed,
     half_norm,
     hookimpl,
     isotropic,
-    longitudinal_wave_speed,
     pointwise,
     pressure,
     scaled,
@@ -124,9 +124,10 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves."""
+    """Speed of longitudinal waves in flow, which is faster than in rest."""
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
+    cone = strength_of(parameters)
+    return flowing_wave_speed(parameters.bulk_modulus, modulus, cone.friction, cone.dilatancy, density)
 
 
 def contradiction(parameters: Parameters) -> str:

@@ -34,15 +34,16 @@ from materials import (
     added,
     assembled_stress,
     deviator,
+    flowing_wave_speed,
     half_norm,
     hookimpl,
     isotropic,
-    longitudinal_wave_speed,
     own_inertial_number_constant,
     plastic_shear_rate,
     pressure,
     scaled,
     shear_modulus,
+    stress_ratio,
 )
 
 
@@ -103,9 +104,9 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves."""
+    """Speed of longitudinal waves in flow."""
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
+    return flowing_wave_speed(parameters.bulk_modulus, modulus, stress_ratio(stress), 0.0, density)
 
 
 def contradiction(parameters: Parameters) -> str:

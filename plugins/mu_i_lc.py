@@ -34,13 +34,14 @@ from materials import (
     added,
     assembled_stress,
     deviator,
+    flowing_wave_speed,
     half_norm,
     hookimpl,
-    longitudinal_wave_speed,
     plastic_shear_rate,
     pressure,
     scaled,
     shear_modulus,
+    stress_ratio,
 )
 
 
@@ -108,9 +109,10 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves."""
+    """Speed of longitudinal waves in flow, dp/d(ln rho) = K_LC phi/phi_ref = K_LC + p."""
+    bulk_modulus = parameters.bulk_modulus + max(0.0, pressure(stress))
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density)
+    return flowing_wave_speed(bulk_modulus, modulus, stress_ratio(stress), 0.0, density)
 
 
 def contradiction(parameters: Parameters) -> str:

@@ -7,9 +7,10 @@
 The printed Eq. 5 lacks d_p in the numerator and has d_p gamma_dot under the root; this form has the dimension of a
 viscosity and returns Eqs. 2 and 4 at alpha = 0.
 
-Near rest eta ~ mu_0 p/alpha, whose explicit step limit is far below the elastic one that `sound_speed` sets. The stress
-of slow points then chatters between the signs of the yield stress and a pile creeps for ever: this law is here to be
-compared with, `mu_i_lc` is the one to use.
+Step limit. `sound_speed` covers waves alone. `viscosity` bounds an explicit step too, to about 3/4 rho h^2/eta on cells
+of h, and near rest eta ~ mu_0 p/alpha: far below any step that a run can afford. The stress of slow points then
+chatters between the signs of the yield stress and a pile creeps for ever: this law is here to be compared with,
+`mu_i_lc` is the one to use.
 
 Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", Eqs. 1-6, Table 1;
 regularisation after Franci & Cremonesi (2019).
@@ -29,9 +30,10 @@ from materials import (
     deviator,
     half_norm,
     hookimpl,
-    longitudinal_wave_speed,
+    pointwise,
     pressure,
     scaled,
+    stress_ratio,
 )
 
 
@@ -81,20 +83,38 @@ def update(
     rate_tensor = deviator(strain_rate)
     rate = half_norm(rate_tensor)
 
+    return assembled_stress(p, scaled(rate_tensor, apparent_viscosity(p, rate, parameters))), state
+
+
+@pointwise
+def apparent_viscosity(pressure: float, rate: float, parameters: Parameters) -> float:
+    """The viscosity eta [Pa s] of Eq. 5, zero without pressure."""
     friction_rate = math.sqrt(rate * rate + parameters.regularisation_rate * parameters.regularisation_rate)
-    inertial_rate = parameters.inertial_number_constant * math.sqrt(p / parameters.grain_density)
+    inertial_rate = parameters.inertial_number_constant * math.sqrt(pressure / parameters.grain_density)
     inertial_rate += parameters.grain_diameter * rate
-    viscosity = 0.0
-    if friction_rate > 0.0 and inertial_rate > 0.0:
-        extra_friction = parameters.dynamic_friction - parameters.static_friction
-        viscosity = parameters.static_friction * p / friction_rate
-        viscosity += extra_friction * p * parameters.grain_diameter / inertial_rate
-    return assembled_stress(p, scaled(rate_tensor, viscosity)), state
+    if not (friction_rate > 0.0 and inertial_rate > 0.0):
+        return 0.0
+    extra_friction = parameters.dynamic_friction - parameters.static_friction
+    return pressure * (
+        parameters.static_friction / friction_rate + extra_friction * parameters.grain_diameter / inertial_rate
+    )
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of compression waves; the viscous step limit is not covered (see the header)."""
-    return longitudinal_wave_speed(parameters.bulk_modulus, 0.0, density)
+    """Speed of compression waves at a constant rate of strain, in which s = eta D_d grows with p (see the header).
+
+    dp/d(ln rho) = K_LC phi/phi_ref = K_LC + p, of which s along the wave adds the share 2/sqrt(3) tau/p at most.
+    """
+    bulk_modulus = parameters.bulk_modulus + max(0.0, pressure(stress))
+    return math.sqrt(bulk_modulus * (1.0 + 2.0 / math.sqrt(3.0) * stress_ratio(stress)) / density)
+
+
+def viscosity(
+    stress: SymmetricTensor, strain_rate: SymmetricTensor, density: float, state: State, parameters: Parameters
+) -> float:
+    """Against a plane wave of compression, 2/3 eta."""
+    rate = half_norm(deviator(strain_rate))
+    return 2.0 / 3.0 * apparent_viscosity(max(0.0, pressure(stress)), rate, parameters)
 
 
 def contradiction(parameters: Parameters) -> str:
@@ -120,6 +140,8 @@ LAW = Law(
     initial_state=initial_state,
     update=update,
     sound_speed=sound_speed,
+    viscosity=viscosity,
+    hook_version=2,
     contradiction=contradiction,
     parameter_sets={
         "paper": ParameterSet(

@@ -23,8 +23,8 @@ A step. I is the plastic inertial number of the step, with p at its end. For an 
 with M(I) and p_c(I) (`cam_clay_step`, exact and bracketed), and gives back a plastic shear, so an inertial number. A
 larger assumed I makes a larger surface, so less plastic shear: what is found falls while what is assumed rises. The one
 root is found by the secant method, begun at the I of the step before, with bisection wherever that leaves its bracket.
-The return of Cam Clay leaves a trace of F, which a fast step would magnify in I; its end lies exactly on the surface of a
-slightly different I, and that one counts as assumed. A step found elastic gives the largest I at which there is flow.
+The return of Cam Clay leaves a trace of F, which a fast step would magnify in I; its end lies exactly on the surface of
+a slightly different I, and that one counts as assumed. An elastic step gives the largest I at which there is flow.
 A step of some per cent can soften so much that its return jumps over that root; it is then taken in equal parts.
 
 Grains carry no tension: opened points keep a gap, as in `modified_cam_clay`.

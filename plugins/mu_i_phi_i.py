@@ -42,16 +42,17 @@ from materials import (
     added,
     assembled_stress,
     deviator,
+    flowing_wave_speed,
     friction_of_inertial_number,
     half_norm,
     hookimpl,
     isotropic,
-    longitudinal_wave_speed,
     own_inertial_number_constant,
     pointwise,
     pressure,
     scaled,
     shear_modulus,
+    stress_ratio,
 )
 
 # Of the trial stress.
@@ -197,9 +198,10 @@ def flow_at(number: float, increment: Increment, parameters: Parameters) -> Flow
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves; (1) stiffens with p."""
+    """Speed of longitudinal waves in flow; (1) stiffens with p."""
+    bulk_modulus = parameters.bulk_modulus + max(0.0, pressure(stress))
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus + max(0.0, pressure(stress)), modulus, density)
+    return flowing_wave_speed(bulk_modulus, modulus, stress_ratio(stress), 0.0, density)
 
 
 def contradiction(parameters: Parameters) -> str:
