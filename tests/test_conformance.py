@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from documentation import DOCS
 
-from materials import registry
+from materials import get_material, registry
 from materials.registry import Registry
 from validation.conformance.suite import CHECKS, QUICK, examine
 
@@ -67,24 +67,27 @@ def test_every_check_has_its_deliberate_mistake():
     assert {check.name for check in CHECKS} == MISTAKES.keys() | without
 
 
-VISCOUS = RETURNED.replace("assembled_stress(", "added(scaled(deviator(strain_rate), 1e3), assembled_stress(").replace(
-    ")), new_state", "))), new_state"
-)
-DECLARED = "hook_version=2,\n    viscosity=lambda stress, strain_rate, density, state, parameters: {} * 2.0 / 3.0 * 1e3"
-
-
 @pytest.mark.parametrize(
-    ("declaration", "fails"),
+    ("old", "new", "fails"),
     [
-        ("hook_version=1", {"sound speed"}),
-        (DECLARED.format("1.0"), set()),
-        (DECLARED.format("0.9"), {"viscosity"}),
+        ("    viscosity=viscosity,\n", "", "sound speed"),
+        ("return 4.0 / 3.0 * parameters.viscosity", "return parameters.viscosity", "viscosity"),
     ],
-    ids=["undeclared", "declared", "too small"],
+    ids=["undeclared", "too small"],
 )
-def test_viscous_stress_has_to_be_declared_in_full(declaration, fails, tmp_path):
-    found = verdicts(law_of(SOUND_LAW.replace("hook_version=1", declaration).replace(RETURNED, VISCOUS), tmp_path))
-    assert fails == {"sound speed", "viscosity"} & {name for name, one in found.items() if one.verdict == "FAIL"}
+def test_viscosity_has_to_be_declared_in_full(old, new, fails, tmp_path):
+    text = Path(get_material("newtonian").source_file).read_text()
+    assert text.count(old) == 1
+    path = tmp_path / "viscous_law.py"
+    path.write_text(text.replace(old, new).replace('name="newtonian"', 'name="viscous_law"'))
+    found = Registry()
+    found.load_file(path)
+    outcomes = verdicts(found.get("viscous_law").law)
+    assert [name for name, outcome in outcomes.items() if outcome.verdict == "FAIL"] == [fails]
+
+
+def test_step_that_a_viscosity_asks_for_is_stated():
+    assert "explicit steps up to 6.7e-10 s" in verdicts(get_material("mu_i_lc_viscous"))["viscosity"].reason
 
 
 def test_header_without_equations_is_caught(tmp_path):
