@@ -21,14 +21,14 @@ class Curves:
 SHEAR, TRIAXIAL = "constant-pressure-shear", "triaxial-drained"
 CURVES = {
     "drucker_prager": Curves(TRIAXIAL, ("paper", "aluminium_bars"), ("initial_pressure=1000", "final_strain=0.02")),
-    "linear_elastic": Curves(TRIAXIAL, ("soft_solid",)),
+    "linear_elastic": Curves(TRIAXIAL, ("soft_solid",), ("initial_pressure=1000",)),
     "modified_cam_clay": Curves(TRIAXIAL, ("paper", "paper_ocr4")),
     "mu_i_elastoplastic": Curves(SHEAR, ("paper", "glass_beads")),
     "mu_i_lc": Curves(SHEAR, ("paper", "published_figure")),
     "mu_i_lc_viscous": Curves(SHEAR, ("paper",)),
     "mu_i_mcc": Curves(SHEAR, ("paper", "paper_ocr4")),
     "mu_i_phi_i": Curves(SHEAR, ("paper", "dem_shear")),
-    "neo_hookean": Curves("oedometer", ("vortex",)),
+    "neo_hookean": Curves("oedometer", ("vortex",), ("final_strain=0.15",)),
     "newtonian": Curves(SHEAR, ("glycerol",)),
 }
 

@@ -93,6 +93,10 @@ def _draw_over_time(
         stress_ratio.axhline(ratio, color="red", linewidth=1.0, label="CSL")
     stress_ratio.set(xlabel="$t$ [s]", ylabel="$q/p$ [-]", ylim=(-0.1, None))
     viscosity.set(xlabel="$t$ [s]", ylabel=r"$\eta$ [Pa.s] (log scale)", yscale="log")
+    lowest, highest = viscosity.get_ylim()
+    if highest < 1.5 * lowest:
+        # A constant: its rounding is not worth the panel.
+        viscosity.set_ylim(0.1 * lowest, 10.0 * highest)
     ends = np.cumsum([settings.slow_duration, settings.ramp_duration, settings.fast_duration])
     for axes in (stress_ratio, viscosity):
         for number, (end, duration) in enumerate(zip(ends, np.diff(ends, prepend=0.0), strict=True), start=1):
