@@ -14,12 +14,14 @@ from materials.law import HOOK_VERSION, Law, ParameterSet
 from materials.pointwise import pointwise
 from materials.registry import get_material, hookimpl, registry
 from materials.rheology import (
+    flowing_wave_speed,
     friction_of_inertial_number,
     inertial_number,
     longitudinal_wave_speed,
     own_inertial_number_constant,
     plastic_shear_rate,
     shear_modulus,
+    stress_ratio,
 )
 from materials.tensor import (
     SymmetricTensor,
@@ -69,6 +71,7 @@ __all__ = [
     "energy_of_logarithmic_compression",
     "energy_of_shear",
     "equivalent_shear_stress",
+    "flowing_wave_speed",
     "friction_of_inertial_number",
     "get_material",
     "half_norm",
@@ -85,6 +88,7 @@ __all__ = [
     "scaled",
     "shear_modulus",
     "shear_strain_rate",
+    "stress_ratio",
     "trace",
     "volumetric_strain_rate",
 ]

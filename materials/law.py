@@ -16,7 +16,7 @@ from materials.tensor import SymmetricTensor, isotropic
 # version rises when a law can use something new, the oldest when a law written for an older one would go wrong.
 HOOK_VERSION = 2
 OLDEST_HOOK_VERSION = 1
-# The version in which laws could first state their elastic energy, and where they hold a point at a bound.
+# The version in which laws could first state more than update and sound speed: energy, viscosity, bounds, small steps.
 STATEMENTS_VERSION = 2
 
 
@@ -57,6 +57,10 @@ class Law:
     contradiction   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
     carries_tension whether the material may be pulled; a law of loose grains leaves it at False
     hook_version    version of this interface that the law was written for; a law that does not say was for version 1
+    viscosity       (stress, strain_rate, density, state, parameters) -> viscosity [Pa s] against plane waves, declared
+                    by a law whose stress follows the rate of strain itself. Its `sound_speed` is that of waves at a
+                    constant rate; its viscosity bounds an explicit step besides, to about rho h^2/(2 viscosity) on
+                    cells of h. Since hook version 2
 
     The functions take and return scalars and NamedTuples, call only `math` and functions marked with
     `pointwise`, and have no side effects.
@@ -78,6 +82,7 @@ class Law:
         Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any, bool]] | None
     ) = None
     hook_version: int = 1
+    viscosity: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any], float] | None = None
 
     def checked(self, values: dict[str, Any], where: str) -> Any:
         """Parameters of this law from values by name; `where` names their place in messages. Raises InputError."""
@@ -133,7 +138,7 @@ def _check_hook_version(law: Law) -> None:
         raise DeclarationError(
             f"written for hook version {written_for}; {understood}: the law has to be brought up to date"
         )
-    for name in ("stored_energy", "at_bound"):
+    for name in ("small_step", "stored_energy", "at_bound", "viscosity"):
         if getattr(law, name) is not None and written_for < STATEMENTS_VERSION:
             raise DeclarationError(
                 f"{name} belongs to hook version {STATEMENTS_VERSION}; the law says hook_version={written_for}"

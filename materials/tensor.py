@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from materials.pointwise import pointwise
 
-
 # Times a third is a fraction of the time of a division by three.
 THIRD = 1.0 / 3.0
 

@@ -11,8 +11,8 @@ from materials.compilation import PointwiseLaw, explained, named, pointwise_law
 from materials.tensor import SymmetricTensor
 from mpm_core.body import Body
 from mpm_core.columns import DENSITY, SXX, SXY, SYY, SZZ, X
+from mpm_core.law_at_points import make_state_access
 from mpm_core.sources import CORE_MARK
-from mpm_core.stress import make_state_access
 
 
 @cache

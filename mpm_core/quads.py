@@ -194,7 +194,7 @@ def as_quad(a: Any) -> Any:
 def _choose_as_quad(a):  # type: ignore[no-untyped-def]
     if isinstance(a, QuadType):
         return lambda a: a
-    return lambda a: _filled(float(a))
+    return lambda a: _filled(float(a))  # type: ignore[call-arg]
 
 
 def _operator(symbol: Callable[..., Any], operation: Any) -> None:
@@ -256,7 +256,7 @@ def where_equal(a: Any, b: Any, then: Any, otherwise: Any) -> Any:
 @overload(truncated)
 def _choose_truncated(a):  # type: ignore[no-untyped-def]
     if isinstance(a, QuadType):
-        return lambda a: _truncated(a)
+        return lambda a: _truncated(a)  # type: ignore[call-arg]  # noqa: PLW0108
     return lambda a: math.floor(a) if a > 0.0 else math.ceil(a)
 
 
@@ -277,5 +277,7 @@ def _choose_greater(a, b):  # type: ignore[no-untyped-def]
 @overload(where_equal)
 def _choose_where_equal(a, b, then, otherwise):  # type: ignore[no-untyped-def]
     if isinstance(a, QuadType):
-        return lambda a, b, then, otherwise: _where_equal(a, as_quad(b), as_quad(then), as_quad(otherwise))
+        return lambda a, b, then, otherwise: _where_equal(  # type: ignore[call-arg]
+            a, as_quad(b), as_quad(then), as_quad(otherwise)
+        )
     return lambda a, b, then, otherwise: then if a == b else otherwise

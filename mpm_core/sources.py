@@ -13,6 +13,7 @@ KERNEL_FILES = (
     "fields",
     "grid",
     "grid_to_points",
+    "law_at_points",
     "momentum",
     "points_to_grid",
     "quads",

@@ -16,15 +16,13 @@ from typing import Any
 
 import numpy as np
 from numba import njit, prange
-from numba.cpython.unsafe.tuple import tuple_setitem
 from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw, named
-from materials.tensor import SymmetricTensor, added, isotropic, shear_strain_rate, trace
+from materials.tensor import SymmetricTensor, shear_strain_rate, trace
 from mpm_core.columns import (
     DENSITY,
     DENSITY_AROUND,
-    FIRST_STATE,
     LXX,
     LXY,
     LYX,
@@ -33,12 +31,10 @@ from mpm_core.columns import (
     SXX,
     SXY,
     SYY,
-    SZZ,
-    VX,
-    VY,
     X,
 )
 from mpm_core.grid_to_points import BLOCK
+from mpm_core.law_at_points import make_apply_law, make_largest_signal_speed, ordered_bits
 from mpm_core.sources import CORE_MARK
 
 # The shear rate [1/s] below which material counts as at rest.
@@ -50,61 +46,6 @@ GROUP = 256
 # What `stress_pass` reports for each block of points.
 MAX_SIGNAL_SPEED, INTERNAL_WORK, MAX_INCREMENT = range(3)
 REPORTS = 3
-
-
-@register_jitable
-def replaced(values, k, value):  # type: ignore[no-untyped-def]
-    """A copy of a tuple with one item replaced.
-
-    A function of this module rather than a call in `load`: the disk cache is keyed on what a kernel closes over, and
-    the compiler's intrinsic itself is another object in every process.
-    """
-    return tuple_setitem(values, k, value)  # type: ignore[call-arg]
-
-
-def make_state_access(state_class: type[Any], mark: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Functions that load a law's state of one point from its rows, and store it."""
-    zeros = (0.0,) * len(state_class._fields)
-    load_values, store_values = _load_none, _store_none
-    for k in range(len(zeros)):
-        load_values, store_values = _with_variable(k, load_values, store_values, mark)
-
-    @register_jitable
-    @named(mark)
-    def load(rows, p):  # type: ignore[no-untyped-def]
-        return state_class(*load_values(rows, p, zeros))
-
-    return load, store_values
-
-
-@register_jitable
-def _load_none(rows, p, values):  # type: ignore[no-untyped-def]
-    return values
-
-
-@register_jitable
-def _store_none(rows, p, state):  # type: ignore[no-untyped-def]
-    pass
-
-
-def _with_variable(
-    k: int, load_others: Callable[..., Any], store_others: Callable[..., Any], mark: str
-) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Access to one state variable more. Its row is fixed when the functions are made, as the compiler wants it."""
-    row = FIRST_STATE + k
-
-    @register_jitable
-    @named(f"{mark}_{k}")
-    def load(rows, p, values):  # type: ignore[no-untyped-def]
-        return replaced(load_others(rows, p, values), k, rows[row][p])
-
-    @register_jitable
-    @named(f"{mark}_{k}")
-    def store(rows, p, state):  # type: ignore[no-untyped-def]
-        store_others(rows, p, state)
-        rows[row][p] = state[k]
-
-    return load, store
 
 
 @register_jitable
@@ -134,15 +75,6 @@ def closing_strain(density, around, shear_rate, exchange):  # type: ignore[no-un
     share = exchange * shear_rate
     difference = max(0.0, 2.0 * (around - density))
     return difference * share / ((around + density) * (shear_rate + QUIET_RATE + share))
-
-
-@register_jitable
-def ordered_bits(value):  # type: ignore[no-untyped-def]
-    """The bits of a non-negative float as an integer: the same order, and NaN above everything.
-
-    A maximum of integers is vectorised and keeps NaN; a maximum of floats does one or the other.
-    """
-    return np.float64(value).view(np.int64)
 
 
 @register_jitable
@@ -197,67 +129,11 @@ def work_done(rows, first, last, room):  # type: ignore[no-untyped-def]
 def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..., Any]:
     """The stress pass of a law; it takes the law's parameters as a plain tuple, and dt over the time constant.
 
-    Reports per block of points: the largest signal speed c + |v| [m/s], the work of the stress on the strain [J/m], and
-    the largest volumetric strain increment of the step. Where anything is not finite, the last one is NaN.
+    Reports per block of points: the largest signal speed c + |v| of a group [m/s], the work of the stress on the strain
+    [J/m], and the largest volumetric strain increment of the step. Where anything is not finite, the last one is NaN.
     """
-    update, sound_speed = law.update, law.sound_speed
-    has_small_step = law.small_step is not None
-    small_step = law.small_step if has_small_step else law.update
-    parameter_class = law.parameters
     mark = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}"
-    load, store = make_state_access(law.state, mark)
-
-    @register_jitable
-    @named(mark)
-    def apply_law(rows, first, last, closings, parameters, dt):  # type: ignore[no-untyped-def]
-        lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-        sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
-        law_parameters = parameter_class(*parameters)
-        for p in range(first, last):
-            motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-            strain_rate = added(motion, isotropic(closings[p - first]))
-            stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
-            stress, state = update(stress, strain_rate, density[p], load(rows, p), law_parameters, dt)
-            sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
-            store(rows, p, state)
-
-    @register_jitable
-    @named(mark)
-    def apply_law_where_pending(rows, first, last, closings, parameters, dt, pending):  # type: ignore[no-untyped-def]
-        for p in range(first, last):
-            if pending[p - first]:
-                apply_law(rows, p, p + np.uint64(1), closings[p - first :], parameters, dt)
-
-    @register_jitable
-    @named(mark)
-    def apply_small_step(rows, first, last, closings, parameters, dt, pending):  # type: ignore[no-untyped-def]
-        lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-        sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
-        law_parameters = parameter_class(*parameters)
-        for p in range(first, last):
-            motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-            strain_rate = added(motion, isotropic(closings[p - first]))
-            stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
-            stress, state, succeeded = small_step(stress, strain_rate, density[p], load(rows, p), law_parameters, dt)
-            pending[p - first] = not succeeded
-            if succeeded:
-                sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
-                store(rows, p, state)
-
-    @register_jitable
-    @named(mark)
-    def largest_signal_speed(rows, first, last, parameters):  # type: ignore[no-untyped-def]
-        vx, vy = rows[VX], rows[VY]
-        sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
-        law_parameters = parameter_class(*parameters)
-        fastest = np.int64(0)
-        for p in range(first, last):
-            stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
-            speed = np.sqrt(vx[p] * vx[p] + vy[p] * vy[p])
-            sound = sound_speed(stress, density[p], load(rows, p), law_parameters)
-            not_finite = 0.0 * (sxx[p] + syy[p] + szz[p] + sxy[p])
-            fastest = max(fastest, ordered_bits(speed + sound + not_finite))
-        return fastest
+    apply_law, largest_signal_speed = make_apply_law(law, mark), make_largest_signal_speed(law, mark)
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(mark)
@@ -266,19 +142,14 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
         for block in prange(reports.shape[0]):
             closings = np.empty(GROUP)
             room = (closings, np.empty(GROUP), np.empty(GROUP))
-            pending = np.empty(GROUP, np.int64)
             fastest, largest, work = np.int64(0), np.int64(0), 0.0
             for start in range(block * BLOCK, min(count, (block + 1) * BLOCK), GROUP):
                 first, last = np.uint64(start), np.uint64(min(count, start + GROUP))
                 increment = bring_forward(rows, first, last, dt, exchange, room, keeps_shear_strain)
-                if has_small_step:
-                    apply_small_step(rows, first, last, closings, parameters, dt, pending)
-                    apply_law_where_pending(rows, first, last, closings, parameters, dt, pending)
-                else:
-                    apply_law(rows, first, last, closings, parameters, dt)
+                apply_law(rows, first, last, closings, parameters, dt)
                 speed = largest_signal_speed(rows, first, last, parameters)
                 work += work_done(rows, first, last, room)
-                fastest, largest = max(fastest, speed), max(largest, increment)
+                fastest, largest = max(fastest, ordered_bits(speed)), max(largest, increment)
             reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
             reports[block, INTERNAL_WORK] = point_mass * dt * work
             reports[block, MAX_INCREMENT] = np.int64(largest).view(np.float64)

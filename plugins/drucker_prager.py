@@ -40,10 +40,10 @@ from materials import (
     deviator,
     energy_of_logarithmic_compression,
     energy_of_shear,
+    flowing_wave_speed,
     half_norm,
     hookimpl,
     isotropic,
-    longitudinal_wave_speed,
     pointwise,
     pressure,
     scaled,
@@ -126,9 +126,12 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves; of an open point, at the density where it will be in contact."""
+    """Speed of longitudinal waves in flow, faster than in rest; of an open point, at the density of contact."""
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, density * math.exp(state.gap))
+    cone = strength_of(parameters)
+    return flowing_wave_speed(
+        parameters.bulk_modulus, modulus, cone.friction, cone.dilatancy, density * math.exp(state.gap)
+    )
 
 
 def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

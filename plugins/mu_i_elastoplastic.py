@@ -36,15 +36,16 @@ from materials import (
     deviator,
     energy_of_logarithmic_compression,
     energy_of_shear,
+    flowing_wave_speed,
     half_norm,
     hookimpl,
     isotropic,
-    longitudinal_wave_speed,
     own_inertial_number_constant,
     plastic_shear_rate,
     pressure,
     scaled,
     shear_modulus,
+    stress_ratio,
 )
 
 
@@ -105,9 +106,10 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves; of an open point, at the density where it will be in contact."""
+    """Speed of longitudinal waves in flow; of an open point, at the density where it will be in contact."""
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, max(density, state.critical_density))
+    contact_density = max(density, state.critical_density)
+    return flowing_wave_speed(parameters.bulk_modulus, modulus, stress_ratio(stress), 0.0, contact_density)
 
 
 def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

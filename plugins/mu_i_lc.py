@@ -36,13 +36,14 @@ from materials import (
     deviator,
     energy_of_linear_compression,
     energy_of_shear,
+    flowing_wave_speed,
     half_norm,
     hookimpl,
-    longitudinal_wave_speed,
     plastic_shear_rate,
     pressure,
     scaled,
     shear_modulus,
+    stress_ratio,
 )
 
 
@@ -110,10 +111,14 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves; of an open point, at the density where it will be in contact."""
-    contact_density = parameters.grain_density * state.reference_solid_fraction
+    """Speed of longitudinal waves in flow; of an open point, at the density of contact.
+
+    dp/d(ln rho) = K_LC phi/phi_ref = K_LC + p.
+    """
+    bulk_modulus = parameters.bulk_modulus + max(0.0, pressure(stress))
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus, modulus, max(density, contact_density))
+    contact_density = max(density, parameters.grain_density * state.reference_solid_fraction)
+    return flowing_wave_speed(bulk_modulus, modulus, stress_ratio(stress), 0.0, contact_density)
 
 
 def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

@@ -7,9 +7,10 @@
 The printed Eq. 5 lacks d_p in the numerator and has d_p gamma_dot under the root; this form has the dimension of a
 viscosity and returns Eqs. 2 and 4 at alpha = 0.
 
-Near rest eta ~ mu_0 p/alpha, whose explicit step limit is far below the elastic one that `sound_speed` sets. The stress
-of slow points then chatters between the signs of the yield stress and a pile creeps for ever: this law is here to be
-compared with, `mu_i_lc` is the one to use.
+Step limit. `sound_speed` covers waves alone. `viscosity` bounds an explicit step too, to about 3/4 rho h^2/eta on cells
+of h, and near rest eta ~ mu_0 p/alpha: far below any step that a run can afford. The stress of slow points then
+chatters between the signs of the yield stress and a pile creeps for ever: this law is here to be compared with,
+`mu_i_lc` is the one to use.
 
 Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", Eqs. 1-6, Table 1;
 regularisation after Franci & Cremonesi (2019).
@@ -30,9 +31,10 @@ from materials import (
     energy_of_linear_compression,
     half_norm,
     hookimpl,
-    longitudinal_wave_speed,
+    pointwise,
     pressure,
     scaled,
+    stress_ratio,
 )
 
 
@@ -82,26 +84,45 @@ def update(
     rate_tensor = deviator(strain_rate)
     rate = half_norm(rate_tensor)
 
+    return assembled_stress(p, scaled(rate_tensor, apparent_viscosity(p, rate, parameters))), state
+
+
+@pointwise
+def apparent_viscosity(pressure: float, rate: float, parameters: Parameters) -> float:
+    """The viscosity eta [Pa s] of Eq. 5, zero without pressure."""
     friction_rate = math.sqrt(rate * rate + parameters.regularisation_rate * parameters.regularisation_rate)
-    inertial_rate = parameters.inertial_number_constant * math.sqrt(p / parameters.grain_density)
+    inertial_rate = parameters.inertial_number_constant * math.sqrt(pressure / parameters.grain_density)
     inertial_rate += parameters.grain_diameter * rate
-    viscosity = 0.0
-    if friction_rate > 0.0 and inertial_rate > 0.0:
-        extra_friction = parameters.dynamic_friction - parameters.static_friction
-        viscosity = parameters.static_friction * p / friction_rate
-        viscosity += extra_friction * p * parameters.grain_diameter / inertial_rate
-    return assembled_stress(p, scaled(rate_tensor, viscosity)), state
+    if not (friction_rate > 0.0 and inertial_rate > 0.0):
+        return 0.0
+    extra_friction = parameters.dynamic_friction - parameters.static_friction
+    return pressure * (
+        parameters.static_friction / friction_rate + extra_friction * parameters.grain_diameter / inertial_rate
+    )
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of compression waves, of an open point at the density of contact; without the viscous step limit."""
-    contact_density = parameters.grain_density * state.reference_solid_fraction
-    return longitudinal_wave_speed(parameters.bulk_modulus, 0.0, max(density, contact_density))
+    """Speed of compression waves at a constant rate of strain, in which s = eta D_d grows with p (see the header).
+
+    dp/d(ln rho) = K_LC phi/phi_ref = K_LC + p, of which s along the wave adds the share 2/sqrt(3) tau/p at most. An
+    open point counts at the density of contact.
+    """
+    bulk_modulus = parameters.bulk_modulus + max(0.0, pressure(stress))
+    contact_density = max(density, parameters.grain_density * state.reference_solid_fraction)
+    return math.sqrt(bulk_modulus * (1.0 + 2.0 / math.sqrt(3.0) * stress_ratio(stress)) / contact_density)
 
 
 def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
     """Of the compression; the viscous stress stores nothing."""
     return energy_of_linear_compression(pressure(stress), density, parameters.bulk_modulus)
+
+
+def viscosity(
+    stress: SymmetricTensor, strain_rate: SymmetricTensor, density: float, state: State, parameters: Parameters
+) -> float:
+    """Against a plane wave of compression, 2/3 eta."""
+    rate = half_norm(deviator(strain_rate))
+    return 2.0 / 3.0 * apparent_viscosity(max(0.0, pressure(stress)), rate, parameters)
 
 
 def contradiction(parameters: Parameters) -> str:
@@ -128,6 +149,8 @@ LAW = Law(
     update=update,
     sound_speed=sound_speed,
     stored_energy=stored_energy,
+    viscosity=viscosity,
+    hook_version=2,
     contradiction=contradiction,
     parameter_sets={
         "paper": ParameterSet(
@@ -144,7 +167,6 @@ LAW = Law(
             density_of_table_1,
         )
     },
-    hook_version=2,
 )
 
 

@@ -23,6 +23,8 @@ A step. I is the plastic inertial number of the step, with p at its end. For an 
 with M(I) and p_c(I) (`cam_clay_step`, exact and bracketed), and gives back a plastic shear, so an inertial number. A
 larger assumed I makes a larger surface, so less plastic shear: what is found falls while what is assumed rises. The one
 root is found by the secant method, begun at the I of the step before, with bisection wherever that leaves its bracket.
+The return of Cam Clay leaves a trace of F, which a fast step would magnify in I; its end lies exactly on the surface of
+a slightly different I, and that one counts as assumed. An elastic step gives the largest I at which there is flow.
 A step of some per cent can soften so much that its return jumps over that root; it is then taken in equal parts.
 
 Grains carry no tension: opened points keep a gap, as in `modified_cam_clay`.
@@ -48,6 +50,7 @@ from materials import (
     after_closing,
     assembled_stress,
     cam_clay_step,
+    contraction,
     deviator,
     deviatoric_stress,
     energy_of_cam_clay,
@@ -65,10 +68,11 @@ from materials import (
     volumetric_strain_rate,
 )
 
-# The last move of the yield surface, relative; the secant method leaves its square.
-TOLERANCE = 1e-8
+# Of the yield surface by the inertial number found against the one assumed.
+TOLERANCE = 1e-9
 MAXIMUM_ITERATIONS = 60
-# Of the yield surface by the inertial number found against the one assumed; more means that the return jumps.
+ROUND_OFF = 1e-15
+# The same; more means that the return jumps.
 LARGEST_MISMATCH = 1e-6
 # Strain below which a return does not jump.
 SMALLEST_PART = 1e-4
@@ -124,11 +128,21 @@ class Increment(NamedTuple):
 
 
 class Flow(NamedTuple):
-    """A step with the surface of an assumed inertial number, and the inertial number of its plastic strain."""
+    """A step with the yield surface of an assumed inertial number.
+
+    size_at_rest  p_c0 at its end [Pa]
+    assumed       inertial number of the surface on which it ends: the one asked for, but for what is left of F there
+    found         inertial number of its plastic strain
+    slope, compression_slope   derivatives of found and of the plastic volume strain with respect to assumed, for a
+                  small step: where to try next
+    """
 
     end: CamClayStep
+    size_at_rest: float
     assumed: float
     found: float
+    slope: float
+    compression_slope: float
 
 
 def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
@@ -163,7 +177,7 @@ def update(
     )
     flow = flow_in_parts(increment, state.inertial_number, parameters)
     end = flow.end
-    size_at_rest = max(end.preconsolidation_pressure, 2.0 * smallest) / growth_of_surface(flow.assumed, parameters)
+    size_at_rest = max(flow.size_at_rest, 2.0 * smallest / growth_of_surface(flow.assumed, parameters))
     if end.mean_pressure < smallest:
         gap = parameters.swelling_index * math.log(smallest / end.mean_pressure)
         return isotropic(0.0), State(size_at_rest, gap, 0.0)
@@ -186,12 +200,11 @@ def flow_in_parts(increment: Increment, guess: float, parameters: Parameters) ->
 def led_through(increment: Increment, parts: int, guess: float, parameters: Parameters) -> tuple[Flow, bool]:
     """The last of equal parts of a step, and whether each had the inertial number of its own plastic strain."""
     start = CamClayStep(increment.start_pressure, increment.size_at_rest, increment.start_deviator, 0.0, 0.0)
-    flow, is_consistent = Flow(start, 0.0, guess), True
+    flow, is_consistent = Flow(start, increment.size_at_rest, 0.0, guess, 0.0, 0.0), True
     largest_mismatch = LARGEST_MISMATCH * sensitive_inertial_number(parameters)
     compression, shear, dt = increment.compression / parts, scaled(increment.shear, 1.0 / parts), increment.dt / parts
     for _ in range(parts):
-        size_at_rest = flow.end.preconsolidation_pressure / growth_of_surface(flow.assumed, parameters)
-        part = Increment(flow.end.mean_pressure, flow.end.deviator, compression, shear, size_at_rest, dt)
+        part = Increment(flow.end.mean_pressure, flow.end.deviator, compression, shear, flow.size_at_rest, dt)
         flow = consistent_flow(part, flow.found, parameters)
         is_consistent = is_consistent and abs(flow.found - flow.assumed) <= largest_mismatch
     return flow, is_consistent
@@ -202,45 +215,92 @@ def consistent_flow(increment: Increment, guess: float, parameters: Parameters) 
     """The step whose plastic strain has the inertial number of its yield surface."""
     tolerance = TOLERANCE * sensitive_inertial_number(parameters)
     flow = flow_at(guess, increment, parameters, 0.0)
-    slope = slope_of_found(flow, increment, parameters)
-    lower, upper = -1.0, math.inf
+    slope = flow.slope
+    lower, upper = 0.0, math.inf
     for _ in range(MAXIMUM_ITERATIONS):
         excess = flow.found - flow.assumed
-        if excess == 0.0:
+        if abs(excess) <= tolerance:
             return flow
         if excess > 0.0:
             lower = flow.assumed
         else:
-            upper = flow.assumed
-        trial = flow.assumed + excess / (1.0 - slope)
-        if flow.found == 0.0:
-            # On an elastic step the slope says nothing; the point may not flow at all.
-            trial = 0.0 if lower < 0.0 else 0.5 * (lower + upper)
-        elif slope > -math.inf and abs(trial - flow.assumed) <= 1e-4 * tolerance:
+            if flow.found == 0.0:
+                flow = onset_of_flow(flow.end, lower, increment, parameters)
+                if flow.assumed == 0.0:
+                    return flow
+                slope = flow.slope
+            upper = min(upper, flow.assumed)
+        trial = flow.assumed + (flow.found - flow.assumed) / (1.0 - slope)
+        if not lower < trial < upper:
+            trial = 0.5 * (lower + upper) if upper < math.inf else flow.found
+            slope = -math.inf
+        if is_exhausted(flow.assumed, trial, upper - lower, slope, tolerance):
             return flow
-        elif not lower < trial < upper:
-            trial = 0.5 * (max(lower, 0.0) + upper) if upper < math.inf else flow.found
-        new = flow_at(trial, increment, parameters, flow.end.plastic_compression)
-        if abs(trial - flow.assumed) <= tolerance:
-            return new
-        new_excess = abs(new.found - new.assumed)
-        # Close to the root round-off stalls the search as well, but there the secant method ends it.
-        stalled = new_excess > 0.5 * abs(excess) and upper < math.inf and new_excess > 0.01 * (new.found + new.assumed)
+        expected = flow.end.plastic_compression + flow.compression_slope * (trial - flow.assumed)
+        new = flow_at(trial, increment, parameters, expected)
+        is_stalled = abs(new.found - new.assumed) > 0.5 * abs(excess) and upper < math.inf
         # Without a slope the next trial leaves the bracket, which is then halved.
-        slope = -math.inf if stalled else min(0.0, (new.found - flow.found) / (new.assumed - flow.assumed))
+        slope = -math.inf if is_stalled else slope_between(flow, new)
         flow = new
     return flow
 
 
 @pointwise
+def is_exhausted(last: float, trial: float, width: float, slope: float, tolerance: float) -> bool:
+    """Whether there is nothing between two trials, or a bracket that had to be halved is too narrow for a root."""
+    return abs(trial - last) <= ROUND_OFF * trial or (slope == -math.inf and width <= tolerance)
+
+
+@pointwise
+def slope_between(last: Flow, new: Flow) -> float:
+    """Slope of the inertial number found: of the secant or, from an elastic step, of the tangent."""
+    if last.found == 0.0 or new.found == 0.0 or new.assumed == last.assumed:
+        return new.slope
+    return min(0.0, (new.found - last.found) / (new.assumed - last.assumed))
+
+
+@pointwise
+def onset_of_flow(elastic: CamClayStep, lower: float, increment: Increment, parameters: Parameters) -> Flow:
+    """An elastic step with the inertial number whose yield surface it just reaches, at which flow sets in.
+
+    (1) is solved in the logarithm of p_c0, which is convex in I, by Newton's method from below; `lower` is an inertial
+    number at which the step is plastic, or 0.
+    """
+    p, s = elastic.mean_pressure, elastic.deviator
+    q_squared = 1.5 * contraction(s, s)
+    per_number = 1.0 / (parameters.dilation_inertial_number * plastic_index_of(parameters))
+    number = lower
+    for _ in range(MAXIMUM_ITERATIONS):
+        m = steady_stress_ratio(number, parameters)
+        reduced = q_squared / (m * m)
+        excess = math.log((reduced / p + p) / increment.size_at_rest) - number * per_number
+        if excess <= ROUND_OFF:
+            break
+        number += excess / (
+            2.0 * reduced / (reduced + p * p) * slope_of_stress_ratio(number, parameters) / m + per_number
+        )
+    if number == 0.0:
+        return Flow(elastic_end(elastic, increment.size_at_rest), increment.size_at_rest, 0.0, 0.0, 0.0, 0.0)
+    size = increment.size_at_rest * growth_of_surface(number, parameters)
+    return on_surface(elastic_end(elastic, size), size, number, increment, parameters)
+
+
+@pointwise
+def elastic_end(step: CamClayStep, size: float) -> CamClayStep:
+    """An elastic step with a yield surface of another size p_c."""
+    return CamClayStep(step.mean_pressure, size, step.deviator, 0.0, 0.0)
+
+
+@pointwise
 def flow_at(assumed: float, increment: Increment, parameters: Parameters, expected: float) -> Flow:
     """The Cam Clay step with the surface of an inertial number; `expected` as in `cam_clay_step`."""
+    size = increment.size_at_rest * growth_of_surface(assumed, parameters)
     end = cam_clay_step(
         increment.start_pressure,
         increment.start_deviator,
         increment.compression,
         increment.shear,
-        increment.size_at_rest * growth_of_surface(assumed, parameters),
+        size,
         CamClay(
             steady_stress_ratio(assumed, parameters),
             parameters.compression_index,
@@ -249,9 +309,41 @@ def flow_at(assumed: float, increment: Increment, parameters: Parameters, expect
         ),
         expected,
     )
-    rate = end.plastic_shear / increment.dt
-    found = inertial_number(rate, end.mean_pressure, parameters.grain_diameter, parameters.grain_density)
-    return Flow(end, assumed, found)
+    if end.plastic_shear == 0.0 and end.plastic_compression == 0.0:
+        return Flow(end, increment.size_at_rest, assumed, 0.0, 0.0, 0.0)
+    return on_surface(end, size, assumed, increment, parameters)
+
+
+@pointwise
+def on_surface(end: CamClayStep, size: float, assumed: float, increment: Increment, parameters: Parameters) -> Flow:
+    """A step that ends on the yield surface, to the tolerance of its return; `size` is its p_c [Pa] at the start.
+
+    Moving the surface by dF changes the multiplier by dF/(K F_p^2 + 3 G F_q^2 + H), H from hardening.
+    """
+    p, p_c, s = end.mean_pressure, end.preconsolidation_pressure, end.deviator
+    m = steady_stress_ratio(assumed, parameters)
+    plastic_index = plastic_index_of(parameters)
+    reduced = 1.5 * contraction(s, s) / (m * m)
+
+    f = reduced - p * (p_c - p)
+    f_p, f_q = 2.0 * p - p_c, 2.0 * math.sqrt(reduced) / m
+    f_i = -2.0 * reduced / m * slope_of_stress_ratio(assumed, parameters)
+    f_i -= p * p_c / (parameters.dilation_inertial_number * plastic_index)
+    bulk_modulus = p / parameters.swelling_index
+    stiffness = bulk_modulus * f_p * f_p + p * p_c * f_p / plastic_index
+    stiffness += 3.0 * shear_modulus(bulk_modulus, parameters.poisson_ratio) * f_q * f_q
+    # Dry of the critical state softening can outweigh the rest.
+    per_number = f_i / stiffness if stiffness > 0.0 else 0.0
+
+    number_of_strain = inertial_number(1.0 / increment.dt, p, parameters.grain_diameter, parameters.grain_density)
+    return Flow(
+        end,
+        increment.size_at_rest * (p_c / size),
+        assumed - f / f_i,
+        end.plastic_shear * number_of_strain,
+        0.5 * math.sqrt(3.0) * f_q * per_number * number_of_strain,
+        f_p * per_number,
+    )
 
 
 @pointwise
@@ -262,42 +354,30 @@ def steady_stress_ratio(number: float, parameters: Parameters) -> float:
 
 
 @pointwise
+def slope_of_stress_ratio(number: float, parameters: Parameters) -> float:
+    """dM/dI."""
+    constant = parameters.friction_inertial_number
+    distance = constant + number
+    return (parameters.dynamic_state_ratio - parameters.critical_state_ratio) * constant / (distance * distance)
+
+
+@pointwise
+def plastic_index_of(parameters: Parameters) -> float:
+    """The slope of plastic compression, lambda - kappa."""
+    return parameters.compression_index - parameters.swelling_index
+
+
+@pointwise
 def growth_of_surface(number: float, parameters: Parameters) -> float:
     """p_c/p_c0 (Eq. 7)."""
-    plastic_index = parameters.compression_index - parameters.swelling_index
-    return math.exp(min(number / (parameters.dilation_inertial_number * plastic_index), LARGEST_EXPONENT))
+    exponent = number / (parameters.dilation_inertial_number * plastic_index_of(parameters))
+    return math.exp(min(exponent, LARGEST_EXPONENT))
 
 
 @pointwise
 def sensitive_inertial_number(parameters: Parameters) -> float:
     """The inertial number over which the surface changes by about its own size."""
-    plastic_index = parameters.compression_index - parameters.swelling_index
-    return min(parameters.dilation_inertial_number * plastic_index, parameters.friction_inertial_number)
-
-
-@pointwise
-def slope_of_found(flow: Flow, increment: Increment, parameters: Parameters) -> float:
-    """Derivative of the found with respect to the assumed inertial number, for a small step; where to try next.
-
-    Moving the surface by dF/dI changes the multiplier by (dF/dI)/(K F_p^2 + 3 G F_q^2 + H), H from hardening.
-    """
-    p, p_c = flow.end.mean_pressure, flow.end.preconsolidation_pressure
-    m = steady_stress_ratio(flow.assumed, parameters)
-    plastic_index = parameters.compression_index - parameters.swelling_index
-    constant = parameters.friction_inertial_number
-    m_slope = (parameters.dynamic_state_ratio - parameters.critical_state_ratio) * constant
-    m_slope /= (constant + flow.assumed) * (constant + flow.assumed)
-    q_squared = max(0.0, m * m * p * (p_c - p))
-
-    f_p, f_q = 2.0 * p - p_c, 2.0 * math.sqrt(q_squared) / (m * m)
-    f_i = -2.0 * q_squared * m_slope / (m * m * m) - p * p_c / (parameters.dilation_inertial_number * plastic_index)
-    bulk_modulus = p / parameters.swelling_index
-    stiffness = bulk_modulus * f_p * f_p + p * p_c * f_p / plastic_index
-    stiffness += 3.0 * shear_modulus(bulk_modulus, parameters.poisson_ratio) * f_q * f_q
-    if not stiffness > 0.0:
-        return 0.0
-    rate = 0.5 * math.sqrt(3.0) * f_q * f_i / stiffness / increment.dt
-    return inertial_number(rate, p, parameters.grain_diameter, parameters.grain_density)
+    return min(parameters.dilation_inertial_number * plastic_index_of(parameters), parameters.friction_inertial_number)
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

@@ -44,16 +44,17 @@ from materials import (
     deviator,
     energy_of_linear_compression,
     energy_of_shear,
+    flowing_wave_speed,
     friction_of_inertial_number,
     half_norm,
     hookimpl,
     isotropic,
-    longitudinal_wave_speed,
     own_inertial_number_constant,
     pointwise,
     pressure,
     scaled,
     shear_modulus,
+    stress_ratio,
 )
 
 # Of the trial stress.
@@ -199,12 +200,11 @@ def flow_at(number: float, increment: Increment, parameters: Parameters) -> Flow
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves, of an open point at the density of contact; (1) stiffens with p."""
-    contact_density = parameters.grain_density * state.jamming_solid_fraction
+    """Speed of longitudinal waves in flow, of an open point at the density of contact; (1) stiffens with p."""
+    bulk_modulus = parameters.bulk_modulus + max(0.0, pressure(stress))
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(
-        parameters.bulk_modulus + max(0.0, pressure(stress)), modulus, max(density, contact_density)
-    )
+    contact_density = max(density, parameters.grain_density * state.jamming_solid_fraction)
+    return flowing_wave_speed(bulk_modulus, modulus, stress_ratio(stress), 0.0, contact_density)
 
 
 def stored_energy(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

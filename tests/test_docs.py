@@ -1,6 +1,9 @@
 """The documentation is what the code says: generated parts are up to date, and every shown command works."""
 
 import re
+import shlex
+import subprocess
+import sys
 import typing
 from pathlib import Path
 from typing import Any
@@ -12,6 +15,7 @@ from pydantic import BaseModel
 
 from grainlaw.cli import app
 from grainlaw.reference.command_page import commands
+from grainlaw.reference.law_curves import picture
 from grainlaw.reference.law_pages import own_laws
 from grainlaw.reference.pages import PARTS, regenerated_pages
 from grainlaw.reference.scene_tables import description, models_in, scene_tables
@@ -40,6 +44,21 @@ def test_every_generated_part_stands_on_a_page():
 
 def test_each_law_has_a_page_and_each_page_a_law():
     assert {path.stem for path in (DOCS / "laws").iterdir()} == {law.name for law in own_laws()}
+
+
+@pytest.mark.parametrize("law", [law.name for law in own_laws()])
+def test_each_law_has_its_curves_in_a_small_picture(law):
+    path = DOCS / picture(law)
+    content = path.read_bytes()
+    assert content.startswith(b"\x89PNG")
+    assert len(content) < 60_000
+
+
+def test_the_command_on_a_law_s_page_draws_its_picture(tmp_path):
+    page = (DOCS / "laws" / "linear_elastic.md").read_text(encoding="utf-8")
+    (line,) = re.findall(r"^grainlaw element .*$", page, re.M)
+    subprocess.run([sys.executable, "-m", *shlex.split(line)], cwd=tmp_path, check=True, capture_output=True)
+    assert (tmp_path / "linear_elastic.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize("name", COMMANDS)

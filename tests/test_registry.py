@@ -75,6 +75,10 @@ FAULTS = {
         {"extra": f", hook_version={OLDEST_HOOK_VERSION - 1}"},
         f"written for hook version {OLDEST_HOOK_VERSION - 1}; this grainlaw understands 1 to {HOOK_VERSION}: the law",
     ),
+    "viscosity before its hook version": (
+        {"extra": ", viscosity=sound_speed"},
+        "viscosity belongs to hook version 2; the law says hook_version=1",
+    ),
     "set out of bounds": ({"value": "-1.0"}, "stiffness is outside (0, inf)"),
     "NaN at its own values": (
         {"body": 'return scaled(stress, float("nan")), state'},

@@ -1,5 +1,6 @@
-"""One page for each law that ships with grainlaw: its header, parameters, state variables and parameter sets."""
+"""One page for each law that ships with grainlaw: header, curves, parameters, state variables and parameter sets."""
 
+from grainlaw.reference.law_curves import curves_section
 from grainlaw.reference.markdown import code, table
 from materials import Law, registry
 
@@ -35,6 +36,7 @@ def law_page(law: Law) -> str:
         f"**{law.summary}**\n",
         f"The law is one file, [{law.source_file.name}](../../plugins/{law.source_file.name}), which begins:\n",
         f"```text\n{law.documentation}\n```\n",
+        curves_section(law.name),
         "## Parameters\n",
         "A column after the default holds the values of a named parameter set, as `--parameters` takes it.\n",
         _parameter_table(law),

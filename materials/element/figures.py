@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 import matplotlib as mpl
@@ -11,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter, ScalarFormatter
 from numpy.typing import NDArray
+from PIL import Image
 
 from materials.element.lines import compression_lines, critical_stress_ratio
 from materials.element.result import ElementResult
@@ -18,6 +20,7 @@ from materials.element.shear import ConstantPressureShearSettings
 from materials.tensor import SymmetricTensor
 
 COLOURS = ("tab:green", "tab:blue", "tab:purple", "tab:orange", "tab:brown", "tab:pink", "tab:olive", "tab:cyan")
+COLOURS_OF_A_PICTURE = 128
 DASHES = ("solid", "dashed", "dotted", "dashdot")
 
 Array = NDArray[np.float64]
@@ -55,7 +58,15 @@ def draw(results: Sequence[ElementResult], path: Path) -> None:
             axes.set_title(f"({letter})", y=-0.32)
             axes.tick_params(direction="in", top=True, right=True, which="both")
         _draw_legend(figure, panels)
-        figure.savefig(path, dpi=130)
+        _write(figure, path)
+
+
+def _write(figure: Figure, path: Path) -> None:
+    """A PNG with a palette, a third of the size of one with all colours."""
+    buffer = BytesIO()
+    figure.savefig(buffer, format="png", dpi=130)
+    with Image.open(buffer) as image:
+        image.convert("RGB").quantize(COLOURS_OF_A_PICTURE).save(path, optimize=True)
 
 
 def _curves(results: Sequence[ElementResult]) -> list[Curve]:
@@ -82,6 +93,10 @@ def _draw_over_time(
         stress_ratio.axhline(ratio, color="red", linewidth=1.0, label="CSL")
     stress_ratio.set(xlabel="$t$ [s]", ylabel="$q/p$ [-]", ylim=(-0.1, None))
     viscosity.set(xlabel="$t$ [s]", ylabel=r"$\eta$ [Pa.s] (log scale)", yscale="log")
+    lowest, highest = viscosity.get_ylim()
+    if highest < 1.5 * lowest:
+        # A constant: its rounding is not worth the panel.
+        viscosity.set_ylim(0.1 * lowest, 10.0 * highest)
     ends = np.cumsum([settings.slow_duration, settings.ramp_duration, settings.fast_duration])
     for axes in (stress_ratio, viscosity):
         for number, (end, duration) in enumerate(zip(ends, np.diff(ends, prepend=0.0), strict=True), start=1):

@@ -10,6 +10,7 @@ phi_ref follows for each point from its initial pressure and density, so that th
 Valid for slow flow at critical state: the law knows neither rate nor dilatancy.
 """
 
+import math
 from typing import Annotated, Any, NamedTuple
 
 from materials import (
@@ -21,8 +22,8 @@ from materials import (
     added,
     assembled_stress,
     deviator,
+    flowing_wave_speed,
     hookimpl,
-    longitudinal_wave_speed,
     pressure,
     scaled,
     shear_modulus,
@@ -71,9 +72,10 @@ def update(
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
-    """Speed of longitudinal elastic waves; by Eq. 1 the bulk stiffness dp/d(ln rho) is K + p."""
+    """Speed of longitudinal waves in flow, where tau/p is M/sqrt(3); by Eq. 1 dp/d(ln rho) is K + p."""
+    bulk_modulus = parameters.bulk_modulus + max(0.0, pressure(stress))
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    return longitudinal_wave_speed(parameters.bulk_modulus + max(0.0, pressure(stress)), modulus, density)
+    return flowing_wave_speed(bulk_modulus, modulus, parameters.critical_state_ratio / math.sqrt(3.0), 0.0, density)
 
 
 def density_at_rest(mean_pressure: float, parameters: Parameters) -> float:

@@ -1,7 +1,6 @@
-"""The paper's column of every granular law comes to rest."""
+"""The paper's column of every granular law comes to rest; with what each law costs, in one table."""
 
 import time
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,12 +11,17 @@ from mpm_core.columns import DENSITY
 from mpm_core.simulation import Simulation
 from validation.case import Case, Effort, Evidence, Measurement, upper_bound
 from validation.collapses import collapse, published_viscous
+from validation.conformance.code import nanoseconds_per_update
+from validation.conformance.subject import Subject
+from validation.law_collapses import Collapse, kept
 from validation.scenes import advance
-from validation.survival import Trial, survival, trial
+from validation.survival import ENERGY_BAND, trial
 
 KINETIC_BAND = 1e-6
 CELL_SIZE = {Effort.QUICK: 0.025, Effort.FULL: 0.00625}
 FLOWING, REST = 0.3, 1.5
+# The pile rings with a period of some 0.06 s; its kinetic energy at one instant is a matter of phase.
+RINGING, INSTANTS = 0.1, 25
 TIMED_STEPS = 100
 # Each with its set `paper`, in the column whose initial stress belongs to it.
 LAWS = {
@@ -28,24 +32,8 @@ LAWS = {
     "modified_cam_clay": "MCC OCR 1",
     "mu_i_mcc": "MCC OCR 1",
 }
-
-
-@dataclass(frozen=True)
-class Collapse:
-    """A collapse led to rest.
-
-    kinetic, released      energies at the end [J/m]
-    volume                 over the initial one
-    share_without_stress   of the points
-    cost                   processor time [ns] of a point and step in flow, transfers included
-    """
-
-    trial: Trial
-    kinetic: float
-    released: float
-    volume: float
-    share_without_stress: float
-    cost: float
+# These neither pile up nor rest; of them the table has the cost alone.
+OTHER_LAWS = ("linear_elastic", "mu_i_lc_viscous", "neo_hookean", "newtonian")
 
 
 def column(law: str) -> dict[str, Any]:
@@ -55,15 +43,32 @@ def column(law: str) -> dict[str, Any]:
 
 
 def collapsed(simulation: Simulation) -> Collapse:
-    """Through the flow, where steps are timed, to rest."""
-    body = simulation.bodies[0]
-    initial = volume(body)
+    """Through the flow, where steps are timed, to rest, where the largest kinetic energy is taken."""
+    body, ledger = simulation.bodies[0], simulation.ledger
+    initial, start = volume(body), time.process_time()
     advance(simulation, FLOWING)
     cost = nanoseconds_per_step(simulation)
+    settling = trial(simulation, REST - RINGING)
+    kinetic: list[float] = []
+    if not settling.message:
+        advance(simulation, REST, lambda present: kinetic.append(present.ledger.kinetic), INSTANTS)
     found = trial(simulation, REST)
-    ledger = simulation.ledger
-    share = found.limited["points_without_stress"] / body.count
-    return Collapse(found, ledger.kinetic, -ledger.potential, volume(body) / initial, share, cost)
+    return Collapse(
+        kinetic=max(kinetic, default=ledger.kinetic) / -ledger.potential,
+        missing=found.missing,
+        not_finite=found.not_finite,
+        created=max(settling.created, found.created),
+        runout=found.shape.runout,
+        height=found.shape.height,
+        center_of_mass_height=found.shape.center_of_mass_height,
+        volume=volume(body) / initial,
+        share_without_stress=found.limited["points_without_stress"] / body.count,
+        points=body.count,
+        steps=found.steps,
+        cost=cost,
+        processor_time=time.process_time() - start,
+        message=settling.message or found.message,
+    )
 
 
 def nanoseconds_per_step(simulation: Simulation) -> float:
@@ -79,40 +84,70 @@ def volume(body: Body) -> float:
     return float(np.sum(body.point_mass / body.points[DENSITY]))
 
 
-def at_rest(law: str, found: Collapse) -> Measurement:
-    """Kinetic energy over the energy released."""
-    return upper_bound(f"{law}: kinetic over released energy", "1", found.kinetic / found.released, KINETIC_BAND)
+def measured(law: str, effort: Effort) -> Collapse:
+    """The collapse of a law; in full it is kept, so that a run that was stopped goes on with the next law."""
+    size = CELL_SIZE[effort]
+
+    def run() -> Collapse:
+        return collapsed(collapse(LAWS[law], size, column(law)))
+
+    return run() if effort is Effort.QUICK else kept(law, size, run)
 
 
-def note(law: str, found: Collapse) -> str:
-    """Shape, what the points have come to, and cost."""
-    shape = found.trial.shape
+def bounds(law: str, found: Collapse) -> tuple[Measurement, ...]:
+    """Kinetic over released energy at rest; the end is reached, all is finite, no energy comes from nowhere."""
     return (
-        f"{law}: half width {shape.runout:.3f} m, top {shape.height:.3f} m, centre of mass "
-        f"{shape.center_of_mass_height:.3f} m; {found.share_without_stress:.1%} of the points without stress, volume "
-        f"{found.volume:.3f} of the initial; {found.trial.steps} steps; {found.cost:.0f} ns per point and step in flow"
+        upper_bound(f"{law}: kinetic over released energy", "1", found.kinetic, KINETIC_BAND),
+        upper_bound(f"{law}: time not reached", "1", found.missing, 0.0),
+        upper_bound(f"{law}: points that are not finite", "1", found.not_finite, 0.0),
+        upper_bound(f"{law}: energy created over released", "1", found.created, ENERGY_BAND),
     )
+
+
+def cost_of_update(law: str) -> float:
+    """Processor time of one update [ns], with the set `paper` where there is one."""
+    sets = get_material(law).parameter_sets
+    return nanoseconds_per_update(Subject(get_material(law), "paper" if "paper" in sets else next(iter(sets)), 1))
+
+
+HEADING = (
+    "| law | ns per update | ns per point and step in flow | steps | processor time [s] | kinetic / released at rest "
+    "| not finite | half width [m] | top [m] | volume / initial | without stress |"
+)
+
+
+def table(results: dict[str, Collapse]) -> tuple[str, ...]:
+    """What each law costs and comes to, a line each."""
+    lines = [HEADING, "|" + " --- |" * (HEADING.count("|") - 1)]
+    for law, found in results.items():
+        lines.append(
+            f"| {law} | {cost_of_update(law):.0f} | {found.cost:.0f} | {found.steps} | {found.processor_time:.0f} "
+            f"| {found.kinetic:.1e} | {found.not_finite} | {found.runout:.3f} | {found.height:.3f} "
+            f"| {found.volume:.3f} | {found.share_without_stress:.1%} |"
+        )
+    return (*lines, *(f"| {law} | {cost_of_update(law):.0f} |" + " |" * 9 for law in OTHER_LAWS))
 
 
 def measure(effort: Effort) -> Evidence:
     """Every granular law."""
-    results = {law: collapsed(collapse(base, CELL_SIZE[effort], column(law))) for law, base in LAWS.items()}
-    measurements = [one for law, found in results.items() for one in (at_rest(law, found), *survival(law, found.trial))]
-    return Evidence(tuple(measurements), notes=tuple(note(law, found) for law, found in results.items()))
+    results = {law: measured(law, effort) for law in LAWS}
+    measurements = [one for law, found in results.items() for one in bounds(law, found)]
+    return Evidence(tuple(measurements), notes=table(results))
 
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """The law as published, whose viscosity near rest no elastic step can follow."""
     found = collapsed(collapse("mu(I)-LC", CELL_SIZE[Effort.QUICK], published_viscous()))
-    return (at_rest("mu_i_lc_viscous", found),)
+    return bounds("mu_i_lc_viscous", found)[:1]
 
 
 CASE = Case(
     name="collapse_of_every_law",
     title="the paper's column with every granular law",
     proves="no law breaks down in a large flow, and each comes to rest: solid and fluid in one run",
-    reference="finite values, no energy from nowhere, and kinetic energy below 1e-6 of the energy released at 1.5 s",
-    norm="kinetic over released energy; those of the hard cases",
+    reference="finite values, no energy from nowhere, and kinetic energy below 1e-6 of the energy released, at all of "
+    f"the last {RINGING:g} s before 1.5 s",
+    norm="largest kinetic over released energy; those of the hard cases",
     mistake="the published explicit viscosity in place of the elastic predictor",
     measure=measure,
     control=control,

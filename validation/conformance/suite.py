@@ -43,8 +43,13 @@ CHECKS = (
     ),
     Check(
         "sound speed",
-        "rho c^2 is no more than 10 % below the stiffness against small waves, in the step of a run",
+        "rho c^2 is no more than 1 % below the stiffness against small waves, in the step of a run",
         mechanics.sound_speed,
+    ),
+    Check(
+        "viscosity",
+        "a declared `viscosity` is no more than 1 % below the one against small waves; the step that it allows",
+        mechanics.viscosity,
     ),
     Check("finite", "stress, state and wave speed are numbers at p = 0, opened and closed again", code.finite),
     Check("pure", "the same input gives the same output, however often and in whatever order", code.pure),
