@@ -28,7 +28,7 @@ from benchmarks.tables import (
     roofline_table,
     size_table,
 )
-from mpm_core.threads import usable_threads
+from mpm_core.threads import cores
 from validation.collapses import SCENES
 
 
@@ -152,7 +152,7 @@ def _plans(record: Record, materials: list[str], effort: Effort, roofline: Roofl
 
 
 def _threads() -> list[int]:
-    return [1, 2] if usable_threads(None) > 1 else [1]
+    return [1, 2] if cores() > 1 else [1]
 
 
 MEASURES: dict[Part, Callable[[Record, list[str], Effort, Roofline], None]] = {

@@ -9,7 +9,7 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from mpm_core.threads import usable_threads
+from mpm_core.threads import cores
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -18,7 +18,7 @@ def machine_description() -> dict[str, str]:
     """What a reader needs to know to compare figures; the load is that of the last minute, before the benchmark."""
     return {
         "processor": _processor(),
-        "cores": str(usable_threads(None)),
+        "cores": str(cores()),
         "memory": f"{os.sysconf('SC_PAGE_SIZE') * os.sysconf('SC_PHYS_PAGES') / 2**30:.0f} GiB",
         "load before": f"{os.getloadavg()[0]:.1f}",
         "system": f"{platform.system()} {platform.machine()}",

@@ -32,10 +32,11 @@ COLUMNS_MOVED = {
     "stress": 12 + 5,
 }
 STATE_PASSES = ("stress",)
-# Operations per point, for quadratic splines: weights, then nine nodes with their weight, affine values and sums.
+# Operations per point, for quadratic splines: stencil and weights, what a point brings or receives, then nine nodes of
+# eight components.
 OPERATIONS = {
-    "points to grid": 50 + 3 * 12 + 9 * (1 + 4 * 2 + 6 * 2),
-    "grid to points": 60 + 9 * (1 + 2 + 2 + 11 * 2),
+    "points to grid": 45 + 40 + 9 * (8 * 2 + 4),
+    "grid to points": 45 + 80 + 9 * (4 * 4 + 4 * 2),
 }
 
 

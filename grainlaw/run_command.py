@@ -23,7 +23,7 @@ def run(
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the run that the folder holds.")] = False,
     threads: Annotated[
         int | None,
-        typer.Option("--threads", min=1, metavar="N", help="Threads; default: all cores. Same bits for any."),
+        typer.Option("--threads", min=1, metavar="N", help="Threads; default: the idle cores. Same bits for any."),
     ] = None,
     plugins: PluginFiles = None,
 ) -> None:

@@ -73,16 +73,16 @@ class Law:
     initial_state: Callable[[SymmetricTensor, float, Any], Any]
     update: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any]]
     sound_speed: Callable[[SymmetricTensor, float, Any, Any], float]
-    stored_energy: Callable[[SymmetricTensor, float, Any, Any], float] | None = None
-    at_bound: Callable[[SymmetricTensor, float, Any, Any], bool] | None = None
     parameter_sets: Mapping[str, ParameterSet] = field(default_factory=dict)
     contradiction: Callable[[Any], str] = _no_contradiction
     carries_tension: bool = False
+    hook_version: int = 1
+    viscosity: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any], float] | None = None
+    stored_energy: Callable[[SymmetricTensor, float, Any, Any], float] | None = None
+    at_bound: Callable[[SymmetricTensor, float, Any, Any], bool] | None = None
     small_step: (
         Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any, bool]] | None
     ) = None
-    hook_version: int = 1
-    viscosity: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any], float] | None = None
 
     def checked(self, values: dict[str, Any], where: str) -> Any:
         """Parameters of this law from values by name; `where` names their place in messages. Raises InputError."""

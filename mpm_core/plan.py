@@ -68,7 +68,7 @@ def plan(scene: Scene, threads: int = 1) -> Plan:
         laws=list(dict.fromkeys(body.law.name for body in simulation.bodies)),
         points=points,
         cells=scene.grid.cells[0] * scene.grid.cells[1],
-        nodes_in_reach=_nodes_in_reach(simulation),
+        nodes_in_reach=simulation.reach.nodes,
         bytes_per_point=sum(body.points.nbytes + body.ids.nbytes for body in simulation.bodies) / points,
         memory_bytes=memory_bytes,
         step=step,
@@ -92,14 +92,9 @@ def _steps(scene: Scene, signal_speed: float, stops: int) -> int:
     return round(steps + 0.5 * stops)
 
 
-def _nodes_in_reach(simulation: Simulation) -> int:
-    window = simulation.window
-    return (window.last_x - window.first_x + 1) * (window.last_y - window.first_y + 1)
-
-
 def _savings(simulation: Simulation) -> list[str]:
     nodes = simulation.grid.shape[0] * simulation.grid.shape[1]
-    found = [f"grid: {1.0 - _nodes_in_reach(simulation) / nodes:.0%} of the nodes are out of reach at the start"]
+    found = [f"grid: {1.0 - simulation.reach.nodes / nodes:.0%} of the nodes are out of reach at the start"]
     if "shear_strain" not in simulation.fields:
         found.append("shear strain: not accumulated, as no frame holds it")
     return found

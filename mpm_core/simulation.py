@@ -16,21 +16,12 @@ from mpm_core.columns import LXX, LYY, X, Y
 from mpm_core.elastic_energy import elastic_energy
 from mpm_core.fields import chosen_fields
 from mpm_core.grid import Grid, Window
-from mpm_core.grid_to_points import (
-    HIGHEST_X,
-    HIGHEST_Y,
-    KINETIC_ENERGY,
-    LOWEST_X,
-    LOWEST_Y,
-    MAX_SPEED,
-    MOVED_X,
-    MOVED_Y,
-)
 from mpm_core.held_nodes import hold_nodes
 from mpm_core.initial import build_bodies
+from mpm_core.reach import nothing_in_reach, reach_of
+from mpm_core.reports import step_report
 from mpm_core.scene import Scene
 from mpm_core.sorting import LONGEST_DRIFT
-from mpm_core.stress import INTERNAL_WORK, MAX_INCREMENT, MAX_SIGNAL_SPEED
 from mpm_core.threads import use_threads
 from mpm_core.time_step import (
     LARGEST_STRAIN,
@@ -118,6 +109,7 @@ class Simulation:
         self.last_step = 0.0
         self.steps = 0
         self.drift = math.inf
+        self.reach = nothing_in_reach(self.grid)
         corners = [body.corners() for body in self.bodies]
         lower, upper = np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]
         self.window = self._window_of((lower[0], lower[1]), (upper[0], upper[1]))
@@ -141,19 +133,19 @@ class Simulation:
         Velocities belong to the middles of steps, and the forces at the end of one step act from its middle to that of
         the next, however long that is: with less, energy would come from steps that shrink as a body stiffens.
         """
-        grid, window = self.grid, self.window
+        grid = self.grid
         kick = 0.5 * (self.last_step + dt)
         self._sort_if_drifted()
-        momentum.clear(grid, window)
+        momentum.clear(grid, self.reach)
         for body in self.bodies:
             body.to_grid(grid)
             if self.body_force is not None:
                 scatter_body_force(body, self.body_force(body, self.time), grid, self.basis)
         for axis in self.periodic_axes:
             join_periodic(grid.nodes, grid, axis)
-        momentum.update_velocities(grid, window, self.scene.gravity, kick)
+        momentum.update_velocities(grid, self.reach, self.scene.gravity, kick)
         for wall in self.walls:
-            taken = hold_at_wall(grid, wall, window)
+            taken = hold_at_wall(grid, wall, self.window)
             self.ledger.wall_work += taken.work
             self.ledger.wall_friction += taken.friction
         hold_nodes(grid, self.held_nodes)
@@ -205,34 +197,30 @@ class Simulation:
                     body.wrap(axis, self.grid.lower[axis], self.grid.upper[axis] - self.grid.lower[axis])
                 body.sort(self.grid, self.basis, self.window, self.threads)
             self.drift = 0.0
+            self.find_reach()
+
+    def find_reach(self) -> None:
+        """Find the nodes that the points can reach until the next sort, and leave zeros everywhere else."""
+        momentum.clear(self.grid, self.reach)
+        self.reach = reach_of(self.bodies, self.grid, self.basis, self.periodic_axes)
 
     def _take_reports(self, dt: float) -> None:
-        for body in self.bodies:
-            increment, speed = body.stress_reports[:, [MAX_INCREMENT, MAX_SIGNAL_SPEED]].max(axis=0)
-            if not (increment < LARGEST_INCREMENT and speed < math.inf):
+        reports = [step_report(body.transfer_reports, body.stress_reports) for body in self.bodies]
+        for body, report in zip(self.bodies, reports, strict=True):
+            if not (report.increment < LARGEST_INCREMENT and report.signal_speed < math.inf):
                 self._fail_unsound(body, dt)
-        reports = np.concatenate([body.transfer_reports for body in self.bodies])
-        lower = (float(reports[:, LOWEST_X].min()), float(reports[:, LOWEST_Y].min()))
-        upper = (float(reports[:, HIGHEST_X].max()), float(reports[:, HIGHEST_Y].max()))
+        lower = (min(report.lowest_x for report in reports), min(report.lowest_y for report in reports))
+        upper = (max(report.highest_x for report in reports), max(report.highest_y for report in reports))
         self._refuse_lost_points(lower, upper)
         self.window = self._window_of(lower, upper)
-        self.drift += dt * float(reports[:, MAX_SPEED].max())
-        stress = np.concatenate([body.stress_reports for body in self.bodies])
-        self.strain_rate = float(stress[:, MAX_INCREMENT].max()) / dt
-        self.signal_speed = self._signal_speed(
-            [
-                (
-                    float(body.stress_reports[:, MAX_SIGNAL_SPEED].max()),
-                    float(body.transfer_reports[:, MAX_SPEED].max()),
-                )
-                for body in self.bodies
-            ]
-        )
-        moved = (float(reports[:, MOVED_X].sum()), float(reports[:, MOVED_Y].sum()))
+        self.drift += dt * max(report.fastest for report in reports)
+        self.strain_rate = max(report.increment for report in reports) / dt
+        self.signal_speed = self._signal_speed([(report.signal_speed, report.fastest) for report in reports])
+        gravity_x, gravity_y = self.scene.gravity
         self.ledger.count(
-            kinetic=float(reports[:, KINETIC_ENERGY].sum()),
-            risen=-dt * (self.scene.gravity[0] * moved[0] + self.scene.gravity[1] * moved[1]),
-            worked=float(stress[:, INTERNAL_WORK].sum()),
+            kinetic=sum(report.kinetic for report in reports),
+            risen=-dt * sum(gravity_x * report.moved_x + gravity_y * report.moved_y for report in reports),
+            worked=sum(report.internal_work for report in reports),
         )
 
     def _window_of(self, lower: tuple[float, float], upper: tuple[float, float]) -> Window:

@@ -17,6 +17,8 @@ KERNEL_FILES = (
     "momentum",
     "points_to_grid",
     "quads",
+    "reach",
+    "reports",
     "sorting",
     "stencils",
     "stress",

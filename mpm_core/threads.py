@@ -11,11 +11,20 @@ import numba
 from materials import InputError
 
 
+def cores() -> int:
+    """How many cores this process may use."""
+    return min(len(os.sched_getaffinity(0)), int(numba.config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]
+
+
 def usable_threads(requested: int | None) -> int:
-    """The requested number, or all cores of this process. Raises InputError beyond what the machine has."""
-    available = min(len(os.sched_getaffinity(0)), int(numba.config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]
+    """The requested number, or the cores that no other work on the machine keeps busy, at least one.
+
+    Threads wait for one another after every pass of a step, so that one more than there are idle cores can make a run
+    ten times slower; its results do not depend on the number. Raises InputError beyond what the machine has.
+    """
+    available = cores()
     if requested is None:
-        return available
+        return max(1, available - round(os.getloadavg()[0]))
     if requested > available:
         raise InputError(f"--threads {requested}: this machine has {available}")
     return requested

@@ -79,6 +79,7 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     simulation.signal_speed = float(file.attrs["signal_speed"])
     simulation.strain_rate = float(file.attrs["strain_rate"])
     simulation.window = Window(**_numbers(file["window"], int))
+    simulation.find_reach()
     simulation.ledger = Ledger(**_numbers(file["ledger"], float))
     clock = file["clock"].attrs
     return Clock(int(clock["next_frame"]), int(clock["next_history"]), float(clock["wall_time"]))

@@ -1,0 +1,72 @@
+"""Which nodes the points can reach until they are sorted again: for each column of nodes, a range of rows.
+
+Work on the grid follows these nodes, so that its cost does not depend on the domain, nor on the air above a pile. Nodes
+out of reach hold zeros.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from materials.compilation import named
+from mpm_core.basis import Basis
+from mpm_core.columns import X, Y
+from mpm_core.grid import Grid
+from mpm_core.sources import CORE_MARK
+
+# Cells by which a point may drift between two sorts, rounded up (`sorting.LONGEST_DRIFT`).
+DRIFT = 1
+
+
+@dataclass(frozen=True)
+class Reach:
+    """First and last row of each column of nodes, inclusive; the last lies before the first where there is none."""
+
+    first_rows: NDArray[np.int64]
+    last_rows: NDArray[np.int64]
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes in reach."""
+        return int(np.maximum(0, self.last_rows - self.first_rows + 1).sum())
+
+
+def nothing_in_reach(grid: Grid) -> Reach:
+    """The reach of no points."""
+    return Reach(np.full(grid.shape[0], grid.shape[1]), np.full(grid.shape[0], -1))
+
+
+def reach_of(bodies: Sequence[Any], grid: Grid, basis: Basis, periodic_axes: Sequence[int]) -> Reach:
+    """The nodes that the points of all bodies reach until they have drifted; all of them along a periodic axis."""
+    reach = nothing_in_reach(grid)
+    first, last = reach.first_rows, reach.last_rows
+    for body in bodies:
+        _extend(body.points[X], body.points[Y], grid.origin, grid.cell_size, basis.offset, basis.width, first, last)
+    np.clip(first, 0, grid.shape[1], out=first)
+    np.clip(last, -1, grid.shape[1] - 1, out=last)
+    if 0 in periodic_axes:
+        first[:], last[:] = first.min(), last.max()
+    if 1 in periodic_axes:
+        occupied = last >= first
+        first[occupied], last[occupied] = 0, grid.shape[1] - 1
+    return reach
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def _extend(x, y, origin, cell_size, offset, width, first_rows, last_rows):  # type: ignore[no-untyped-def]
+    columns = len(first_rows)
+    lowest, highest = np.full(columns, np.int64(2**31)), np.full(columns, np.int64(-1))
+    for p in range(len(x)):
+        i = int((x[p] - origin[0]) / cell_size - offset)
+        j = int((y[p] - origin[1]) / cell_size - offset)
+        lowest[i], highest[i] = min(lowest[i], j), max(highest[i], j)
+    for i in range(columns):
+        if highest[i] >= 0:
+            for column in range(max(0, i - DRIFT), min(columns, i + width + DRIFT)):
+                first_rows[column] = min(first_rows[column], lowest[i] - DRIFT)
+                last_rows[column] = max(last_rows[column], highest[i] + width - 1 + DRIFT)
