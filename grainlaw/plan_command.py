@@ -11,7 +11,9 @@ from grainlaw.scene_options import SceneFile, SetValues, load_scene
 def plan(
     scene_file: SceneFile,
     set_values: SetValues = None,
-    threads: Annotated[int | None, typer.Option("--threads", min=1, metavar="N", help="Threads; default: the idle cores.")] = None,
+    threads: Annotated[
+        int | None, typer.Option("--threads", min=1, metavar="N", help="Threads; default: idle cores.")
+    ] = None,
     plugins: PluginFiles = None,
 ) -> None:
     """Print size, memory, time step and expected duration of a scene without running it."""
