@@ -11,16 +11,20 @@ from mpm_core.grid import (
     MASS,
     NEW_VX,
     NEW_VY,
+    NODE_CROWDING,
     NODE_DENSITY,
+    NODE_PRESSURE,
     OLD_VX,
     OLD_VY,
     PX,
     PY,
     VOLUME,
+    VOLUME_PRESSURE,
     Grid,
     Window,
 )
 from mpm_core.sources import CORE_MARK
+from mpm_core.volumes import crowding_of
 
 
 def clear(grid: Grid, window: Window) -> None:
@@ -29,9 +33,10 @@ def clear(grid: Grid, window: Window) -> None:
 
 
 def update_velocities(grid: Grid, window: Window, gravity: tuple[float, float], dt: float) -> None:
-    """Turn what was scattered into density, old velocity and new velocity v + dt (f/m + g) [m/s]."""
+    """Turn what was scattered into old velocity, new velocity v + dt (f/m + g) [m/s], and averages for `volumes`."""
     bounds = (window.first_x, window.last_x, window.first_y, window.last_y)
-    _update(grid.nodes, grid.shape[1], *bounds, dt * gravity[0], dt * gravity[1], dt)
+    room = (*grid.rooms, grid.cell_size**2)
+    _update(grid.nodes, grid.shape[1], *bounds, *room, dt * gravity[0], dt * gravity[1], dt)
 
 
 @njit(parallel=True, cache=True)
@@ -45,7 +50,7 @@ def _clear(nodes, nodes_y, first_x, last_x, first_y, last_y):  # type: ignore[no
 @njit(parallel=True, error_model="numpy", cache=True)
 @named(CORE_MARK)
 def _update(  # type: ignore[no-untyped-def]
-    nodes, nodes_y, first_x, last_x, first_y, last_y, gravity_impulse_x, gravity_impulse_y, dt
+    nodes, nodes_y, first_x, last_x, first_y, last_y, rooms_x, rooms_y, cell, impulse_x, impulse_y, dt
 ):
     for i in prange(first_x, last_x + 1):
         for j in range(first_y, last_y + 1):
@@ -54,10 +59,13 @@ def _update(  # type: ignore[no-untyped-def]
             if mass > 0.0:
                 old_x = nodes[node + np.uint64(PX)] / mass
                 old_y = nodes[node + np.uint64(PY)] / mass
-                new_x = old_x + dt * nodes[node + np.uint64(FX)] / mass + gravity_impulse_x
-                new_y = old_y + dt * nodes[node + np.uint64(FY)] / mass + gravity_impulse_y
+                new_x = old_x + dt * nodes[node + np.uint64(FX)] / mass + impulse_x
+                new_y = old_y + dt * nodes[node + np.uint64(FY)] / mass + impulse_y
                 nodes[node + np.uint64(NEW_VX)] = new_x
                 nodes[node + np.uint64(NEW_VY)] = new_y
-                nodes[node + np.uint64(NODE_DENSITY)] = mass / nodes[node + np.uint64(VOLUME)]
+                volume = nodes[node + np.uint64(VOLUME)]
+                nodes[node + np.uint64(NODE_CROWDING)] = crowding_of(volume, cell * rooms_x[i] * rooms_y[j])
+                nodes[node + np.uint64(NODE_PRESSURE)] = nodes[node + np.uint64(VOLUME_PRESSURE)] / volume
+                nodes[node + np.uint64(NODE_DENSITY)] = mass / volume
                 nodes[node + np.uint64(OLD_VX)] = old_x
                 nodes[node + np.uint64(OLD_VY)] = old_y

@@ -16,5 +16,6 @@ KERNEL_FILES = (
     "sorting",
     "stress",
     "transfer",
+    "volumes",
 )
 CORE_MARK = mark_of_sources(Path(__file__).with_name(f"{name}.py") for name in KERNEL_FILES)
