@@ -38,6 +38,7 @@ class Basis:
     moment        second moment of the weights about the point
     lower_wall    weights where the first node is a ghost
     upper_wall    weights where the last node is a ghost
+    wall_room     the part of a cell that the changed weights leave to the node at a wall, their integral
     """
 
     name: str
@@ -47,6 +48,7 @@ class Basis:
     moment: Callable[[float], float]
     lower_wall: Callable[..., tuple[float, ...]]
     upper_wall: Callable[..., tuple[float, ...]]
+    wall_room: float
 
 
 @register_jitable
@@ -124,7 +126,7 @@ def cubic_at_upper_wall(w: tuple[float, float, float, float]) -> tuple[float, fl
 BASES = {
     basis.name: basis
     for basis in (
-        Basis("linear", 2, 0.0, linear_weights, linear_moment, linear_at_wall, linear_at_wall),
+        Basis("linear", 2, 0.0, linear_weights, linear_moment, linear_at_wall, linear_at_wall, 1 / 2),
         Basis(
             "quadratic",
             3,
@@ -133,8 +135,9 @@ BASES = {
             quadratic_moment,
             quadratic_at_lower_wall,
             quadratic_at_upper_wall,
+            13 / 24,
         ),
-        Basis("cubic", 4, 1.0, cubic_weights, cubic_moment, cubic_at_lower_wall, cubic_at_upper_wall),
+        Basis("cubic", 4, 1.0, cubic_weights, cubic_moment, cubic_at_lower_wall, cubic_at_upper_wall, 7 / 12),
     )
 }
 

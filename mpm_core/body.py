@@ -62,8 +62,10 @@ class Body:
     def choose_kernels(self, basis: Basis, keeps_shear_strain: bool) -> None:
         """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""
         self._points_to_grid = make_points_to_grid(basis)
-        self._grid_to_points = make_grid_to_points(basis)
-        self._stress_pass = make_stress_pass(pointwise_law(self.law), keeps_shear_strain)
+        self._grid_to_points = make_grid_to_points(basis, spreads=not self.law.carries_tension)
+        self._stress_pass = make_stress_pass(
+            pointwise_law(self.law), keeps_shear_strain, ties_volumes=not self.law.carries_tension
+        )
         nothing = tuple(allocate(self.points.shape[0], 0))
         explained(self.law, self._stress_pass, nothing, 1.0, tuple(self.parameters), 0.0, 0.0, self.stress_reports[:0])
 

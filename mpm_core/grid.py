@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 from mpm_core.quads import LANES
 
 # Components of a node, two quads that fill a cache line. The first quad: momentum and force before the momentum update,
-# new and old velocity after it. The second: mass and volume before, mass and density after, and room for two more.
+# new and old velocity after it. The second: mass, volume and volume times pressure before, mass and what `volumes` is
+# made of after.
 PX, PY, FX, FY = 0, 1, 2, 3
 NEW_VX, NEW_VY, OLD_VX, OLD_VY = 0, 1, 2, 3
 BULK = LANES
-MASS, VOLUME, NODE_DENSITY = BULK, BULK + 1, BULK + 1
+MASS, VOLUME, VOLUME_PRESSURE = BULK, BULK + 1, BULK + 2
+NODE_CROWDING, NODE_PRESSURE, NODE_DENSITY = BULK + 1, BULK + 2, BULK + 3
 COMPONENTS = 2 * LANES
 
 CACHE_LINE = 64
@@ -37,6 +39,7 @@ class Window:
 class Grid:
     """A rectangle of `cells` square cells of `cell_size` [m] whose lower corner is `lower` [m].
 
+    `wall_room` is the part of a cell that belongs to a node at a wall (see `basis`).
     Memory is reserved for the whole domain but, being zero until written, occupied only where material has been.
     """
 
@@ -46,6 +49,7 @@ class Grid:
         cells: tuple[int, int],
         cell_size: float,
         periodic_axes: Sequence[int] = (),
+        wall_room: float = 0.5,
     ) -> None:
         self.lower = lower
         self.cells = cells
@@ -56,6 +60,7 @@ class Grid:
         # The nodes just beyond the walls, whose velocity is tied to the inside; no node where the axis is periodic.
         walls = [NO_GHOSTS if axis in periodic_axes else self._ghosts(axis) for axis in (0, 1)]
         self.ghosts = (*walls[0], *walls[1])
+        self.rooms = tuple(self._rooms(axis, axis in periodic_axes, wall_room) for axis in (0, 1))
         self.origin = (lower[0] - GHOSTS * cell_size, lower[1] - GHOSTS * cell_size)
 
     @property
@@ -65,6 +70,16 @@ class Grid:
 
     def _ghosts(self, axis: int) -> tuple[int, int]:
         return GHOSTS - 1, GHOSTS + self.cells[axis] + 1
+
+    def _rooms(self, axis: int, is_periodic: bool, wall_room: float) -> NDArray[np.float64]:
+        """The length along an axis that belongs to each node, in cells."""
+        rooms = np.ones(self.shape[axis])
+        if not is_periodic:
+            low, high = GHOSTS, GHOSTS + self.cells[axis]
+            for wall, inside in ((low, low + 1), (high, high - 1)):
+                rooms[wall] -= 1.0 - wall_room
+                rooms[inside] += 0.5 - wall_room
+        return rooms
 
     def window(self, lower: tuple[float, float], upper: tuple[float, float], offset: float, width: int) -> Window:
         """The nodes that points between two corners [m] reach with a stencil of the given offset and width."""

@@ -11,8 +11,8 @@ so that tau = 0 is APIC (Jiang et al. 2015), tau = infinity affine FLIP, and the
 step. The energy of a point's field is m/2 (v^2 + A:A D); for tau = infinity the transfers keep its sum, but for terms
 of the order of dt.
 
-The grid also returns to each point the density of the material around it, the ratio of mass and volume at the nodes,
-towards which `stress` closes points that have lost contact.
+The grid also returns to each point pressure, density and crowding of the material around it, which tie the volumes of
+points to one another, and points move a little slower or faster than the material where they crowd (`volumes`).
 """
 
 from collections.abc import Callable
@@ -24,9 +24,10 @@ from numba import njit, prange
 from numba.extending import register_jitable
 
 from materials.compilation import named
+from materials.tensor import SymmetricTensor, shear_strain_rate
 from mpm_core.basis import Basis
-from mpm_core.columns import AXX, AXY, AYX, AYY, DENSITY_AROUND, LXX, LXY, LYX, LYY, VX, VY, X, Y
-from mpm_core.grid import BULK, COMPONENTS, NODE_DENSITY
+from mpm_core.columns import AXX, AXY, AYX, AYY, CROWDING, LXX, LXY, LYX, LYY, MEAN_DENSITY, MEAN_PRESSURE, VX, VY, X, Y
+from mpm_core.grid import BULK, COMPONENTS
 from mpm_core.quads import (
     LANES,
     filled,
@@ -42,6 +43,7 @@ from mpm_core.quads import (
 )
 from mpm_core.sources import CORE_MARK
 from mpm_core.stencils import GROUP, four_transposed, make_find_stencils
+from mpm_core.volumes import spreading_rate
 
 BLOCK = 2048
 
@@ -55,13 +57,16 @@ class Gathered(NamedTuple):
 
     means               new and old velocity
     slopes_x, slopes_y  their first moments about the first node of the stencil
-    bulk                mass and density of the nodes around
+    bulk                mass, crowding, pressure and density of the nodes around
+    crowding_x, crowding_y  first moments of the bulk about the first node of the stencil
     """
 
     means: Any
     slopes_x: Any
     slopes_y: Any
     bulk: Any
+    crowding_x: Any
+    crowding_y: Any
 
 
 class Sums(NamedTuple):
@@ -124,12 +129,12 @@ def updated_affine(affine, gradient, p, new, old, memory):  # type: ignore[no-un
 
 @register_jitable(forceinline=True)
 def updated_fields(rows, first, last, cell_size, memory, stencils, gathered, energies):  # type: ignore[no-untyped-def]
-    """Update L, A and the density around of a group; `energies` receives A:A D of the points."""
+    """Update L, A and the averages around of a group; `energies` receives A:A D of the points."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     axx, axy, ayx, ayy = rows[AXX], rows[AXY], rows[AYX], rows[AYY]
-    around = rows[DENSITY_AROUND]
+    mean_density, mean_pressure, crowding = rows[MEAN_DENSITY], rows[MEAN_PRESSURE], rows[CROWDING]
     _, _, places_x, places_y, moments_x, moments_y = stencils
-    means, slopes_x, slopes_y, bulk = gathered
+    means, slopes_x, slopes_y, bulk, _, _ = gathered
     inverse_size, square = 1.0 / cell_size, cell_size * cell_size
     for p in range(first, last, LANES):
         k = p - first
@@ -147,18 +152,37 @@ def updated_fields(rows, first, last, cell_size, memory, stencils, gathered, ene
         xy = updated_affine(axy, lxy, p, new, old, memory)
         new, old = (new_vy_y - y * new_vy) * scale_y, (old_vy_y - y * old_vy) * scale_y
         yy = updated_affine(ayy, lyy, p, new, old, memory)
-        put_quad(around, p, four_transposed(bulk, k)[NODE_DENSITY - BULK])
+        _, crowded, pressure, density = four_transposed(bulk, k)
+        put_quad(crowding, p, crowded)
+        put_quad(mean_pressure, p, pressure)
+        put_quad(mean_density, p, density)
         put_quad(energies, k, square * ((xx * xx + yx * yx) * moment_x + (xy * xy + yy * yy) * moment_y))
 
 
 @register_jitable(forceinline=True)
-def moved(rows, first, last, dt, memory, gathered, energies, sums):  # type: ignore[no-untyped-def]
+def spread(rows, p, k, new_vx, new_vy, cell_size, dt, stencils, gathered):  # type: ignore[no-untyped-def]
+    """The velocities with which points move that also go down the gradient of crowding."""
+    lxx, lxy, lyx, lyy = quad_at(rows[LXX], p), quad_at(rows[LXY], p), quad_at(rows[LYX], p), quad_at(rows[LYY], p)
+    shear_rate = shear_strain_rate(SymmetricTensor(lxx, lyy, 0.0, 0.5 * (lxy + lyx), 0.0, 0.0))
+    speed = cell_size * spreading_rate(shear_rate, dt)
+    crowded = quad_at(rows[CROWDING], p)
+    _, slope_x, _, _ = four_transposed(gathered.crowding_x, k)
+    _, slope_y, _, _ = four_transposed(gathered.crowding_y, k)
+    slope_x = slope_x - quad_at(stencils.x, k) * crowded
+    slope_y = slope_y - quad_at(stencils.y, k) * crowded
+    return new_vx - speed * slope_x, new_vy - speed * slope_y
+
+
+@register_jitable(forceinline=True)
+def moved(rows, first, last, cell_size, dt, memory, spreads, stencils, gathered, energies, sums):  # type: ignore[no-untyped-def]
     """Update velocities and positions of a group; returns the sums with it."""
     x, y, vx, vy = rows[X], rows[Y], rows[VX], rows[VY]
     for p in range(first, last, LANES):
         new_vx, new_vy, old_vx, old_vy = four_transposed(gathered.means, p - first)
         velocity_x = new_vx + memory * (quad_at(vx, p) - old_vx)
         velocity_y = new_vy + memory * (quad_at(vy, p) - old_vy)
+        if spreads:
+            new_vx, new_vy = spread(rows, p, p - first, new_vx, new_vy, cell_size, dt, stencils, gathered)
         new_x, new_y = quad_at(x, p) + dt * new_vx, quad_at(y, p) + dt * new_vy
         put_quad(vx, p, velocity_x)
         put_quad(vy, p, velocity_y)
@@ -169,58 +193,76 @@ def moved(rows, first, last, dt, memory, gathered, energies, sums):  # type: ign
     return sums
 
 
-@cache
-def make_grid_to_points(basis: Basis) -> Callable[..., Any]:
-    """Gather velocity, its gradient and the density around from the grid, and move the points.
-
-    `memory` is exp(-dt/tau). Reports per block of points: kinetic energy [J/m], corners of the bounding box [m], the
-    largest speed at which a point moves [m/s] and the momentum of that motion [kg/s].
-    """
+def make_gather(basis: Basis, spreads: bool) -> Callable[..., Any]:
+    """A function that fills what the points of a group receive."""
     width = basis.width
-    room_for_stencils, find_stencils = make_find_stencils(basis)
 
     @register_jitable(forceinline=True)
-    @named(f"{basis.name}_{CORE_MARK}")
+    @named(f"{basis.name}_{spreads:d}_{CORE_MARK}")
     def gather(count, nodes, nodes_y, stencils, gathered):  # type: ignore[no-untyped-def]
         starts, weights = stencils.starts, stencils.weights
-        means, slopes_x, slopes_y, bulk = gathered
+        means, slopes_x, slopes_y, bulk, crowding_x, crowding_y = gathered
         row_length = np.uint64(nodes_y * COMPONENTS)
         for k in range(count):
             row = np.uint64(starts[k]) * np.uint64(COMPONENTS)
-            mean, slope_x, slope_y, around = filled(0.0), filled(0.0), filled(0.0), filled(0.0)
+            mean, slope_x, slope_y = filled(0.0), filled(0.0), filled(0.0)
+            around, around_x, around_y = filled(0.0), filled(0.0), filled(0.0)
             for a in range(width):
-                in_row = filled(0.0)
+                in_row, around_in_row = filled(0.0), filled(0.0)
                 for b in range(width):
                     node = row + np.uint64(b * COMPONENTS)
                     weight = weights[np.uint64((a * width + b) * GROUP) + k]
                     share = weight * quad_at(nodes, node)
                     in_row = in_row + share
                     slope_y = scaled_sum(float(b), share, slope_y)
-                    around = scaled_sum(weight, quad_at(nodes, node + np.uint64(BULK)), around)
+                    around_share = weight * quad_at(nodes, node + np.uint64(BULK))
+                    around_in_row = around_in_row + around_share
+                    if spreads:
+                        around_y = scaled_sum(float(b), around_share, around_y)
                 mean = mean + in_row
                 slope_x = scaled_sum(float(a), in_row, slope_x)
+                around = around + around_in_row
+                if spreads:
+                    around_x = scaled_sum(float(a), around_in_row, around_x)
                 row += row_length
             put_quad(means, LANES * k, mean)
             put_quad(slopes_x, LANES * k, slope_x)
             put_quad(slopes_y, LANES * k, slope_y)
             put_quad(bulk, LANES * k, around)
+            if spreads:
+                put_quad(crowding_x, LANES * k, around_x)
+                put_quad(crowding_y, LANES * k, around_y)
+
+    return gather
+
+
+@cache
+def make_grid_to_points(basis: Basis, spreads: bool) -> Callable[..., Any]:
+    """Gather velocity, its gradient and averages of the material around from the grid, and move the points.
+
+    `spreads` is whether points move down the gradient of crowding, `memory` exp(-dt/tau). Reports per block of points:
+    kinetic energy [J/m], corners of the bounding box [m], the largest speed at which a point moves [m/s] and the
+    momentum of that motion [kg/s].
+    """
+    gather = make_gather(basis, spreads)
+    room_for_stencils, find_stencils = make_find_stencils(basis)
 
     @njit(parallel=True, error_model="numpy", cache=True)
-    @named(f"{basis.name}_{CORE_MARK}")
+    @named(f"{basis.name}_{spreads:d}_{CORE_MARK}")
     def grid_to_points(  # type: ignore[no-untyped-def]
         rows, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, memory, reports
     ):
         points = len(rows[X])
         for block in prange(reports.shape[0]):
-            stencils, room, energies = room_for_stencils(), np.empty((4, GROUP * LANES)), np.empty(GROUP)
-            gathered = Gathered(room[0], room[1], room[2], room[3])
+            stencils, room, energies = room_for_stencils(), np.empty((6, GROUP * LANES)), np.empty(GROUP)
+            gathered = Gathered(room[0], room[1], room[2], room[3], room[4], room[5])
             sums = no_sums()
             for start in range(block * BLOCK, min(points, (block + 1) * BLOCK), GROUP):
                 first, last = np.uint64(start), np.uint64(min(start + GROUP, points))
                 find_stencils(rows[X], rows[Y], first, last, nodes_y, ghosts, origin, cell_size, stencils)
                 gather(last - first, nodes, nodes_y, stencils, gathered)
                 updated_fields(rows, first, last, cell_size, memory, stencils, gathered, energies)
-                sums = moved(rows, first, last, dt, memory, gathered, energies, sums)
+                sums = moved(rows, first, last, cell_size, dt, memory, spreads, stencils, gathered, energies, sums)
             report(reports, block, point_mass, sums)
 
     return grid_to_points

@@ -9,7 +9,7 @@ from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw, named
 from materials.tensor import SymmetricTensor, added, isotropic
-from mpm_core.columns import DENSITY, FIRST_STATE, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ, VX, VY
+from mpm_core.columns import DENSITY, FIRST_STATE, LXX, LXY, LYX, LYY, STIFFNESS, SXX, SXY, SYY, SZZ, VX, VY
 
 
 @register_jitable
@@ -77,19 +77,19 @@ def _with_variable(
 
 
 def make_apply_law(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
-    """The loop over points that calls a law; `closings` is an isotropic strain rate on top of the motion's."""
+    """The loop over points that calls a law; `ties` are compressive strains besides those of the motion."""
     if law.small_step is None:
         return _make_update(law, mark)
     update, take_small_steps = _make_update(law, mark), _make_small_steps(law, law.small_step, mark)
 
     @register_jitable
     @named(mark)
-    def apply_law(rows, first, last, closings, parameters, dt):  # type: ignore[no-untyped-def]
+    def apply_law(rows, first, last, ties, parameters, dt):  # type: ignore[no-untyped-def]
         pending = np.empty(last - first, np.int64)
-        take_small_steps(rows, first, last, closings, parameters, dt, pending)
+        take_small_steps(rows, first, last, ties, parameters, dt, pending)
         for p in range(first, last):
             if pending[p - first]:
-                update(rows, p, p + np.uint64(1), closings[p - first :], parameters, dt)
+                update(rows, p, p + np.uint64(1), ties[p - first :], parameters, dt)
 
     return apply_law
 
@@ -100,13 +100,13 @@ def _make_update(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
 
     @register_jitable
     @named(mark)
-    def update(rows, first, last, closings, parameters, dt):  # type: ignore[no-untyped-def]
+    def update(rows, first, last, ties, parameters, dt):  # type: ignore[no-untyped-def]
         lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
         sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
         law_parameters = parameter_class(*parameters)
         for p in range(first, last):
             motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-            strain_rate = added(motion, isotropic(closings[p - first]))
+            strain_rate = added(motion, isotropic(ties[p - first] * (-1.0 / (3.0 * dt))))
             stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
             stress, state = law_update(stress, strain_rate, density[p], load(rows, p), law_parameters, dt)
             sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
@@ -122,13 +122,13 @@ def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: s
 
     @register_jitable
     @named(mark)
-    def take_small_steps(rows, first, last, closings, parameters, dt, pending):  # type: ignore[no-untyped-def]
+    def take_small_steps(rows, first, last, ties, parameters, dt, pending):  # type: ignore[no-untyped-def]
         lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
         sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
         law_parameters = parameter_class(*parameters)
         for p in range(first, last):
             motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-            strain_rate = added(motion, isotropic(closings[p - first]))
+            strain_rate = added(motion, isotropic(ties[p - first] * (-1.0 / (3.0 * dt))))
             stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
             stress, state, succeeded = small_step(stress, strain_rate, density[p], load(rows, p), law_parameters, dt)
             pending[p - first] = not succeeded
@@ -140,20 +140,24 @@ def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: s
 
 
 def make_largest_signal_speed(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
-    """The largest sound speed of some points plus the largest speed among them [m/s]; NaN if anything is not finite."""
+    """The largest sound speed of some points plus the largest speed among them [m/s]; NaN if anything is not finite.
+
+    On the way it stores the stiffness rho c^2 of each point [Pa].
+    """
     sound_speed, parameter_class = law.sound_speed, law.parameters
     load, _ = make_state_access(law.state, mark)
 
     @register_jitable
     @named(mark)
     def largest_signal_speed(rows, first, last, parameters):  # type: ignore[no-untyped-def]
-        vx, vy = rows[VX], rows[VY]
+        vx, vy, stiffness = rows[VX], rows[VY], rows[STIFFNESS]
         sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
         law_parameters = parameter_class(*parameters)
         fastest_wave, fastest_squared = np.int64(0), np.int64(0)
         for p in range(first, last):
             stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
             sound = sound_speed(stress, density[p], load(rows, p), law_parameters)
+            stiffness[p] = density[p] * sound * sound
             not_finite = 0.0 * (sxx[p] + syy[p] + szz[p] + sxy[p])
             fastest_wave = max(fastest_wave, ordered_bits(sound + not_finite))
             fastest_squared = max(fastest_squared, ordered_bits(vx[p] * vx[p] + vy[p] * vy[p]))

@@ -11,16 +11,20 @@ from mpm_core.grid import (
     MASS,
     NEW_VX,
     NEW_VY,
+    NODE_CROWDING,
     NODE_DENSITY,
+    NODE_PRESSURE,
     OLD_VX,
     OLD_VY,
     PX,
     PY,
     VOLUME,
+    VOLUME_PRESSURE,
     Grid,
 )
 from mpm_core.reach import Reach
 from mpm_core.sources import CORE_MARK
+from mpm_core.volumes import crowding_of
 
 
 def clear(grid: Grid, reach: Reach) -> None:
@@ -29,8 +33,9 @@ def clear(grid: Grid, reach: Reach) -> None:
 
 
 def update_velocities(grid: Grid, reach: Reach, gravity: tuple[float, float], dt: float) -> None:
-    """Turn what was scattered into density, old velocity and new velocity v + dt (f/m + g) [m/s]."""
-    _update(grid.nodes, grid.shape[1], reach.first_rows, reach.last_rows, dt * gravity[0], dt * gravity[1], dt)
+    """Turn what was scattered into old velocity, new velocity v + dt (f/m + g) [m/s], and averages for `volumes`."""
+    rows, room = (reach.first_rows, reach.last_rows), (*grid.rooms, grid.cell_size**2)
+    _update(grid.nodes, grid.shape[1], *rows, *room, dt * gravity[0], dt * gravity[1], dt)
 
 
 @njit(parallel=True, cache=True)
@@ -45,7 +50,7 @@ def _clear(nodes, nodes_y, first_rows, last_rows):  # type: ignore[no-untyped-de
 @njit(parallel=True, error_model="numpy", cache=True)
 @named(CORE_MARK)
 def _update(  # type: ignore[no-untyped-def]
-    nodes, nodes_y, first_rows, last_rows, gravity_impulse_x, gravity_impulse_y, dt
+    nodes, nodes_y, first_rows, last_rows, rooms_x, rooms_y, cell, impulse_x, impulse_y, dt
 ):
     for i in prange(len(first_rows)):
         for j in range(first_rows[i], last_rows[i] + 1):
@@ -55,8 +60,11 @@ def _update(  # type: ignore[no-untyped-def]
                 inverse = 1.0 / mass
                 old_x, old_y = nodes[node + np.uint64(PX)] * inverse, nodes[node + np.uint64(PY)] * inverse
                 push_x, push_y = nodes[node + np.uint64(FX)] * inverse, nodes[node + np.uint64(FY)] * inverse
-                nodes[node + np.uint64(NEW_VX)] = old_x + dt * push_x + gravity_impulse_x
-                nodes[node + np.uint64(NEW_VY)] = old_y + dt * push_y + gravity_impulse_y
+                nodes[node + np.uint64(NEW_VX)] = old_x + dt * push_x + impulse_x
+                nodes[node + np.uint64(NEW_VY)] = old_y + dt * push_y + impulse_y
                 nodes[node + np.uint64(OLD_VX)] = old_x
                 nodes[node + np.uint64(OLD_VY)] = old_y
-                nodes[node + np.uint64(NODE_DENSITY)] = mass / nodes[node + np.uint64(VOLUME)]
+                volume = nodes[node + np.uint64(VOLUME)]
+                nodes[node + np.uint64(NODE_CROWDING)] = crowding_of(volume, cell * rooms_x[i] * rooms_y[j])
+                nodes[node + np.uint64(NODE_PRESSURE)] = nodes[node + np.uint64(VOLUME_PRESSURE)] / volume
+                nodes[node + np.uint64(NODE_DENSITY)] = mass / volume

@@ -3,7 +3,8 @@
 Affine particle-in-cell transfer (Jiang et al. 2015) with the moving-least-squares gradient (Hu et al. 2018): a point
 brings the velocity field v + A (x - x_p) and the force of its stress,
 
-    m_i += w_i m;  V_i += w_i V;  (m v)_i += w_i m (v + A (x_i - x_p));  f_i -= w_i V sigma (x_i - x_p) / D.
+    m_i += w_i m;  V_i += w_i V;  (V p)_i += w_i V p;
+    (m v)_i += w_i m (v + A (x_i - x_p));  f_i -= w_i V sigma (x_i - x_p) / D.
 
 Momentum and force are linear in the number of the node, `corner + a along_x + b along_y` for the node (a, b) of the
 stencil, so that one addition leads from node to node.
@@ -24,8 +25,9 @@ from numba import njit, prange
 from numba.extending import register_jitable
 
 from materials.compilation import named
+from materials.tensor import THIRD
 from mpm_core.basis import Basis
-from mpm_core.columns import AXX, AXY, AYX, AYY, DENSITY, SXX, SXY, SYY, VX, VY, X, Y
+from mpm_core.columns import AXX, AXY, AYX, AYY, DENSITY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
 from mpm_core.grid import BULK, COMPONENTS
 from mpm_core.quads import LANES, filled, put_quad, quad_at, scaled_sum
 from mpm_core.sources import CORE_MARK
@@ -37,7 +39,7 @@ class Amounts(NamedTuple):
 
     corners           momentum and force at the first node of the stencil, before it is weighed
     along_x, along_y  what is added from node to node
-    bulk              mass and volume
+    bulk              mass, volume and volume times pressure
     """
 
     corners: Any
@@ -51,7 +53,7 @@ def prepare_amounts(rows, first, last, point_mass, cell_size, stencils, amounts)
     """Fill the amounts of a group."""
     vx, vy, density = rows[VX], rows[VY], rows[DENSITY]
     axx, axy, ayx, ayy = rows[AXX], rows[AXY], rows[AYX], rows[AYY]
-    sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
+    sxx, syy, szz, sxy = rows[SXX], rows[SYY], rows[SZZ], rows[SXY]
     _, _, places_x, places_y, moments_x, moments_y = stencils
     corners, along_x, along_y, bulk = amounts
     affine = point_mass * cell_size
@@ -71,12 +73,13 @@ def prepare_amounts(rows, first, last, point_mass, cell_size, stencils, amounts)
         put_transposed(corners, k, px, py, fx, fy)
         put_transposed(along_x, k, px_x, py_x, fx_x, fy_x)
         put_transposed(along_y, k, px_y, py_y, fx_y, fy_y)
-        put_transposed(bulk, k, filled(point_mass), volume, filled(0.0), filled(0.0))
+        pressure = (quad_at(sxx, p) + quad_at(syy, p) + quad_at(szz, p)) * -THIRD
+        put_transposed(bulk, k, filled(point_mass), volume, volume * pressure, filled(0.0))
 
 
 @cache
 def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
-    """Scatter mass, volume, momentum and internal force of the stripes of one parity to the grid."""
+    """Scatter mass, volume, pressure, momentum and internal force of the stripes of one parity to the grid."""
     width = basis.width
     room_for_stencils, find_stencils = make_find_stencils(basis)
 

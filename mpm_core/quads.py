@@ -123,14 +123,23 @@ def _first_lanes(typing_context: Any, quad: Any, count: Any, otherwise: Any) -> 
     return QUAD(QUAD, types.float64, types.float64), generate
 
 
-@intrinsic
-def _truncated(typing_context: Any, quad: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        name = f"llvm.trunc.v{LANES}f64"
-        function = get_or_insert_function(builder.module, ir.FunctionType(_VECTOR, [_VECTOR]), name)
-        return builder.call(function, [arguments[0]])
+def _by_lanes(name: str) -> Any:
+    """A function of the compiler's in each lane."""
 
-    return QUAD(QUAD), generate
+    @intrinsic
+    def function(typing_context: Any, quad: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            whole_name = f"llvm.{name}.v{LANES}f64"
+            found = get_or_insert_function(builder.module, ir.FunctionType(_VECTOR, [_VECTOR]), whole_name)
+            return builder.call(found, [arguments[0]])
+
+        return QUAD(QUAD), generate
+
+    return function
+
+
+_truncated = _by_lanes("trunc")
+_square_root = _by_lanes("sqrt")
 
 
 @intrinsic
@@ -256,8 +265,15 @@ def where_equal(a: Any, b: Any, then: Any, otherwise: Any) -> Any:
 @overload(truncated)
 def _choose_truncated(a):  # type: ignore[no-untyped-def]
     if isinstance(a, QuadType):
-        return lambda a: _truncated(a)  # type: ignore[call-arg]  # noqa: PLW0108
+        return lambda a: _truncated(a)  # noqa: PLW0108
     return lambda a: math.floor(a) if a > 0.0 else math.ceil(a)
+
+
+@overload(math.sqrt)
+def _choose_square_root(x):  # type: ignore[no-untyped-def]
+    if isinstance(x, QuadType):
+        return lambda x: _square_root(x)  # noqa: PLW0108
+    return None
 
 
 @overload(lesser)

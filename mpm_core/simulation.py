@@ -94,7 +94,8 @@ class Simulation:
         use_threads(threads)
         self.basis = BASES[scene.transfer.basis]
         self.periodic_axes = _periodic_axes(scene)
-        self.grid = Grid(scene.grid.lower, scene.grid.cells, scene.grid.cell_size, self.periodic_axes)
+        size = (scene.grid.lower, scene.grid.cells, scene.grid.cell_size)
+        self.grid = Grid(*size, self.periodic_axes, self.basis.wall_room)
         self.bodies = build_bodies(scene)
         self.fields = chosen_fields(scene.output.fields, [body.law for body in self.bodies])
         started = time.perf_counter()

@@ -22,5 +22,6 @@ KERNEL_FILES = (
     "sorting",
     "stencils",
     "stress",
+    "volumes",
 )
 CORE_MARK = mark_of_sources(Path(__file__).with_name(f"{name}.py") for name in KERNEL_FILES)

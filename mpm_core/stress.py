@@ -3,11 +3,7 @@
 For each point: rotate the stress with the material (exact rotation by the increment of spin),
 bring the density to the end of the step (midpoint rule for d ln rho = -tr D dt), call the law.
 
-Points without contact. In a flow each point sums up its own error of volume, which no force of the grid can see: after
-a collapse more than half of the points of a stiff law would have opened for good, while the others carry twice the
-pressure. While the material deforms, a point without stress therefore closes towards the density of the material around
-it, by the strain ln(rho_around/rho) over the time constant of the transfer. At rest it must not pump: the rate is
-multiplied by gamma_dot/(gamma_dot + QUIET_RATE). Points with stress, elastic and cohesive material are not touched.
+Loose grains take on a strain besides that of the motion, which ties the volumes of points to one another (`volumes`).
 """
 
 from collections.abc import Callable
@@ -19,26 +15,28 @@ from numba import njit, prange
 from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw, named
-from materials.tensor import SymmetricTensor, shear_strain_rate, trace
+from materials.tensor import THIRD, SymmetricTensor, shear_strain_rate, trace
 from mpm_core.columns import (
+    CROWDING,
     DENSITY,
-    DENSITY_AROUND,
     LXX,
     LXY,
     LYX,
     LYY,
+    MEAN_DENSITY,
+    MEAN_PRESSURE,
     SHEAR_STRAIN,
+    STIFFNESS,
     SXX,
     SXY,
     SYY,
+    SZZ,
     X,
 )
 from mpm_core.grid_to_points import BLOCK
 from mpm_core.law_at_points import make_apply_law, make_largest_signal_speed, ordered_bits
 from mpm_core.sources import CORE_MARK
-
-# The shear rate [1/s] below which material counts as at rest.
-QUIET_RATE = 0.1
+from mpm_core.volumes import SQUEEZE, closing_strain, evening_share, evening_strain
 
 # Points that go through the parts of the pass together; they stay in the nearest cache.
 GROUP = 256
@@ -66,37 +64,39 @@ def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
-def closing_strain(density, around, shear_rate, exchange):  # type: ignore[no-untyped-def]
-    """The compressive strain of one step towards the density around; `exchange` is dt over the time constant.
-
-    It is d s/(1 + s) with the share s = exchange gamma_dot/(gamma_dot + QUIET_RATE) and d = ln(around/density),
-    to third order and bounded by 2 for points that have lost contact.
-    """
-    share = exchange * shear_rate
-    difference = max(0.0, 2.0 * (around - density))
-    return difference * share / ((around + density) * (shear_rate + QUIET_RATE + share))
-
-
-@register_jitable
-def bring_forward(rows, first, last, dt, exchange, room, keeps_shear_strain):  # type: ignore[no-untyped-def]
-    """Rotate the stress and bring the density to the end of the step; returns the largest volumetric increment.
-
-    The room receives the isotropic strain rate of points without contact, the power of the old stress over mass, and
-    the new volume over mass.
-    """
-    closings, works, volumes = room
+def tie_volumes(rows, first, last, dt, exchange, ties):  # type: ignore[no-untyped-def]
+    """The compressive strain of the step that ties the volumes of points to one another, into `ties`."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-    sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
-    density, around, shear_strain = rows[DENSITY], rows[DENSITY_AROUND], rows[SHEAR_STRAIN]
-    largest = np.int64(0)
+    sxx, syy, szz = rows[SXX], rows[SYY], rows[SZZ]
+    density, crowding, stiffness = rows[DENSITY], rows[CROWDING], rows[STIFFNESS]
+    mean_density, mean_pressure = rows[MEAN_DENSITY], rows[MEAN_PRESSURE]
     for p in range(first, last):
         motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
         shear_rate = shear_strain_rate(motion)
+        share = evening_share(shear_rate, exchange)
+        pressure = (sxx[p] + syy[p] + szz[p]) * -THIRD
+        evening = evening_strain(pressure, mean_pressure[p], stiffness[p], share)
+        closing = closing_strain(density[p], mean_density[p], share)
         has_contact = sxx[p] != 0.0 or syy[p] != 0.0
-        closing = 0.0 if has_contact else closing_strain(density[p], around[p], shear_rate, exchange)
-        half_increment = 0.5 * (dt * trace(motion) - closing)
+        ties[p - first] = (evening if has_contact else closing) + SQUEEZE * dt * shear_rate * crowding[p]
+
+
+@register_jitable
+def bring_forward(rows, first, last, dt, ties, room, keeps_shear_strain):  # type: ignore[no-untyped-def]
+    """Rotate the stress and bring the density to the end of the step; returns the largest volumetric increment.
+
+    `ties` are compressive strains besides those of the motion. The room receives the power of the old stress over mass,
+    and the new volume over mass.
+    """
+    works, volumes = room
+    lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+    sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
+    density, shear_strain = rows[DENSITY], rows[SHEAR_STRAIN]
+    largest = np.int64(0)
+    for p in range(first, last):
+        motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
+        half_increment = 0.5 * (dt * trace(motion) - ties[p - first])
         xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
-        closings[p - first] = closing * (-1.0 / (3.0 * dt))
         # rho (1 - h)/(1 + h), and both volumes, from a single division
         grown, shrunk = 1.0 + half_increment, 1.0 - half_increment
         inverse = 1.0 / (density[p] * grown * shrunk)
@@ -105,7 +105,7 @@ def bring_forward(rows, first, last, dt, exchange, room, keeps_shear_strain):  #
         sxx[p], syy[p], sxy[p] = xx, yy, xy
         density[p] *= density[p] * shrunk * shrunk * inverse
         if keeps_shear_strain:
-            shear_strain[p] += dt * shear_rate
+            shear_strain[p] += dt * shear_strain_rate(motion)
         largest = max(largest, ordered_bits(abs(2.0 * half_increment)))
     return largest
 
@@ -115,7 +115,7 @@ def work_done(rows, first, last, room):  # type: ignore[no-untyped-def]
     """The mean of the powers of the old and the new stress over mass, summed over the points [W/kg]."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
-    _, works, volumes = room
+    works, volumes = room
     for p in range(first, last):
         power = sxx[p] * lxx[p] + syy[p] * lyy[p] + sxy[p] * (lxy[p] + lyx[p])
         works[p - first] = 0.5 * (works[p - first] + power * volumes[p - first])
@@ -126,13 +126,15 @@ def work_done(rows, first, last, room):  # type: ignore[no-untyped-def]
 
 
 @cache
-def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..., Any]:
+def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, ties_volumes: bool) -> Callable[..., Any]:
     """The stress pass of a law; it takes the law's parameters as a plain tuple, and dt over the time constant.
+
+    `ties_volumes` says whether the material is loose grains, whose points take on the strain of `volumes`.
 
     Reports per block of points: the largest signal speed c + |v| of a group [m/s], the work of the stress on the strain
     [J/m], and the largest volumetric strain increment of the step. Where anything is not finite, the last one is NaN.
     """
-    mark = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}"
+    mark = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}{ties_volumes:d}"
     apply_law, largest_signal_speed = make_apply_law(law, mark), make_largest_signal_speed(law, mark)
 
     @njit(parallel=True, error_model="numpy", cache=True)
@@ -140,13 +142,14 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
     def stress_pass(rows, point_mass, parameters, dt, exchange, reports):  # type: ignore[no-untyped-def]
         count = len(rows[X])
         for block in prange(reports.shape[0]):
-            closings = np.empty(GROUP)
-            room = (closings, np.empty(GROUP), np.empty(GROUP))
+            ties, room = np.zeros(GROUP), (np.empty(GROUP), np.empty(GROUP))
             fastest, largest, work = np.int64(0), np.int64(0), 0.0
             for start in range(block * BLOCK, min(count, (block + 1) * BLOCK), GROUP):
                 first, last = np.uint64(start), np.uint64(min(count, start + GROUP))
-                increment = bring_forward(rows, first, last, dt, exchange, room, keeps_shear_strain)
-                apply_law(rows, first, last, closings, parameters, dt)
+                if ties_volumes:
+                    tie_volumes(rows, first, last, dt, exchange, ties)
+                increment = bring_forward(rows, first, last, dt, ties, room, keeps_shear_strain)
+                apply_law(rows, first, last, ties, parameters, dt)
                 speed = largest_signal_speed(rows, first, last, parameters)
                 work += work_done(rows, first, last, room)
                 fastest, largest = max(fastest, ordered_bits(speed)), max(largest, increment)
