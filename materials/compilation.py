@@ -50,12 +50,14 @@ def named(mark: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     return rename
 
 
-def mark_of_sources(files: Iterable[Path]) -> str:
-    """A mark for `named` that changes with the content of the files.
+def mark_of_sources(files: Iterable[Path], modules: Iterable[str] = ()) -> str:
+    """A mark for `named` that changes with the content of the files and the names of the modules.
 
     The disk cache notices an edit of the file that holds a kernel, but not of what the kernel takes from other files.
+    It refers to NamedTuples by the modules that define them: what another module with the same content has left there
+    cannot be read.
     """
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(repr(sorted(modules)).encode())
     for path in sorted(files):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:14]
@@ -102,6 +104,7 @@ def pointwise_law(law: Law) -> PointwiseLaw:
     """The functions of a law, registered with the compiler."""
     _register_helpers()
     functions = (law.initial_state, law.update, law.sound_speed)
+    modules = {law.parameters.__module__, law.state.__module__}
     return PointwiseLaw(
         name=law.name,
         parameters=law.parameters,
@@ -109,7 +112,7 @@ def pointwise_law(law: Law) -> PointwiseLaw:
         initial_state=_register_marked(law.initial_state),
         update=_register_marked(law.update),
         sound_speed=_register_marked(law.sound_speed),
-        mark=f"{law.name}_{mark_of_sources(_source_files(functions))}",
+        mark=f"{law.name}_{mark_of_sources(_source_files(functions), modules)}",
     )
 
 
