@@ -10,6 +10,9 @@ import numba
 
 from materials import InputError
 
+# TBB, which numba prefers, waits at the end of a process for its threads by spinning: for minutes on a busy machine.
+numba.config.THREADING_LAYER_PRIORITY = ["omp", "tbb", "workqueue"]  # type: ignore[attr-defined]
+
 
 def usable_threads(requested: int | None) -> int:
     """The requested number, or all cores of this process. Raises InputError beyond what the machine has."""
