@@ -50,12 +50,14 @@ def named(mark: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     return rename
 
 
-def mark_of_sources(files: Iterable[Path]) -> str:
-    """A mark for `named` that changes with the content of the files.
+def mark_of_sources(files: Iterable[Path], modules: Iterable[str] = ()) -> str:
+    """A mark for `named` that changes with the content of the files and the names of the modules.
 
     The disk cache notices an edit of the file that holds a kernel, but not of what the kernel takes from other files.
+    It refers to NamedTuples by the modules that define them: what another module with the same content has left there
+    cannot be read.
     """
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(repr(sorted(modules)).encode())
     for path in sorted(files):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:14]
@@ -105,6 +107,7 @@ def pointwise_law(law: Law) -> PointwiseLaw:
     _register_helpers()
     functions: list[Callable[..., Any]] = [law.initial_state, law.update, law.sound_speed]
     optional = [function for function in (law.small_step, law.stored_energy) if function is not None]
+    modules = {law.parameters.__module__, law.state.__module__}
     return PointwiseLaw(
         name=law.name,
         parameters=law.parameters,
@@ -114,7 +117,7 @@ def pointwise_law(law: Law) -> PointwiseLaw:
         sound_speed=_register_marked(law.sound_speed),
         small_step=_register_marked(law.small_step) if law.small_step is not None else None,
         stored_energy=_register_marked(law.stored_energy) if law.stored_energy is not None else None,
-        mark=f"{law.name}_{mark_of_sources(_source_files([*functions, *optional]))}",
+        mark=f"{law.name}_{mark_of_sources(_source_files([*functions, *optional]), modules)}",
     )
 
 

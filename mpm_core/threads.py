@@ -10,6 +10,9 @@ import numba
 
 from materials import InputError
 
+# TBB, which numba prefers, waits at the end of a process for its threads by spinning: for minutes on a busy machine.
+numba.config.THREADING_LAYER_PRIORITY = ["omp", "tbb", "workqueue"]  # type: ignore[attr-defined]
+
 
 def cores() -> int:
     """How many cores this process may use."""

@@ -1,7 +1,9 @@
 """What the stress pass does before the law sees a point: rotation of the stress, change of the density."""
 
 import math
+import sys
 
+import numba
 import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, simulation
@@ -74,3 +76,9 @@ def test_shear_strain_is_kept_only_for_a_scene_that_writes_it():
     body.points[LXY] = 1.0
     body.update_stress(1e-3, 0.0)
     assert not body.points[SHEAR_STRAIN].any()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems may have no OpenMP")
+def test_threads_are_not_those_that_spin_at_the_end_of_a_process():
+    one_body().update_stress(1e-4, 0.0)
+    assert numba.threading_layer() == "omp"

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scenes_for_tests import CAM_CLAY, COLUMN, MU_I_LC
 
+from materials import get_material
 from mpm_core import Scene, Simulation
 
 STEPS, DT = 60, 2e-4
@@ -66,3 +67,23 @@ def test_code_of_two_laws_from_the_disk_cache_is_not_mixed_up():
         sums(law)
     here = [repr(float(values.sum())) for values in columns_after_some_steps(*LAWS).values()]
     assert sums(*LAWS) == f"{here}\n"
+
+
+def test_a_copy_of_a_law_leaves_nothing_in_the_disk_cache_that_the_law_stumbles_over(tmp_path):
+    """The copy runs first, in a process of its own; its module does not exist in the next."""
+    script = (
+        "import sys; from pathlib import Path; from materials import SymmetricTensor, isotropic; "
+        "from materials.registry import Registry; "
+        "from materials.compilation import make_single_step, pointwise_law; "
+        "found = Registry(); found.load_file(Path(sys.argv[1])); law = found.get('newtonian').law; "
+        "values = law.parameter_sets['glycerol'].parameters; stress = isotropic(-1.0); "
+        "state = law.initial_state(stress, 1261.0, values); "
+        "print(make_single_step(pointwise_law(law))(stress, SymmetricTensor(*6 * (0.0,)), 1261.0, state, values, 1e-5))"
+    )
+    printed = []
+    for name in ("first_copy", "second_copy"):
+        path = tmp_path / f"{name}.py"
+        path.write_text(get_material("newtonian").source_file.read_text())
+        command = [sys.executable, "-c", script, path]
+        printed.append(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    assert printed[0] == printed[1]
