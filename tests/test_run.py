@@ -133,10 +133,11 @@ def test_an_elastic_bar_rings_and_keeps_its_energy(time_constant):
     assert abs(loss) < 0.02
 
 
-def test_the_energy_error_of_an_elastic_bar_falls_with_the_step():
-    _, coarse = ringing_bar(0.3, 10.0)
-    _, fine = ringing_bar(0.1, 10.0)
-    assert fine == pytest.approx(coarse / 3.0, rel=0.3)
+def test_the_energy_error_of_an_elastic_bar_is_small_with_any_step():
+    errors = {safety: abs(ringing_bar(safety, 10.0)[1]) for safety in (0.8, 0.3, 0.05)}
+    assert errors[0.8] < 1e-2
+    assert errors[0.3] < 4e-3
+    assert errors[0.05] < errors[0.3]
 
 
 @pytest.mark.parametrize(("end", "interval"), [(0.95, None), (0.9, 0.3), (0.1, 0.03), (0.1, 1.0)])
@@ -200,7 +201,9 @@ def test_a_law_that_gives_nan_stops_the_run_with_time_step_point_and_place(
     assert 0.0 < y < 0.5
     assert "finite" in error
     history = read_history(out)
-    assert all(np.isfinite(history[name]).all() for name in history.dtype.names)
+    # The spring of these tests states no elastic energy.
+    undefined = {"elastic_energy", "inelastic_work"}
+    assert all(np.isfinite(history[name]).all() for name in history.dtype.names if name not in undefined)
     assert 0.0 < read_collection(out)[-1].time < time
 
 
