@@ -208,14 +208,14 @@ def test_a_law_that_gives_nan_stops_the_run_with_time_step_point_and_place(
 
 
 def test_a_step_that_becomes_unstable_stops_the_run(tmp_path, monkeypatch, capsys, fresh_registry):
-    faster = "if trace(stress) < -300.0:\n        return 1e3"
+    faster = "if trace(stress) < -600.0:\n        return 1e3"
     changes = {"time.step": 2e-3}
     error, _ = fails(monkeypatch, capsys, tmp_path, FALLING_SPRING, changes, sound_speed=faster)
     assert re.search(r"t = \S+ s, step \d+: the fixed step 0\.002 s is above the stable one, now \S+e-05 s", error)
 
 
 def test_a_stable_step_that_vanishes_stops_the_run(tmp_path, monkeypatch, capsys, fresh_registry):
-    faster = "if trace(stress) < -300.0:\n        return 1e12"
+    faster = "if trace(stress) < -600.0:\n        return 1e12"
     error, _ = fails(monkeypatch, capsys, tmp_path, FALLING_SPRING, {}, sound_speed=faster)
     asked = r"the step would have to shrink to \S+ s, below the smallest one, \S+ s \(time\.smallest_step\)"
     assert re.search(rf"point \d+ of \S+ \(\S+\) at .* m: {asked}: sound speed 1e\+12 m/s", error)
