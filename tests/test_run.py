@@ -133,10 +133,11 @@ def test_an_elastic_bar_rings_and_keeps_its_energy(time_constant):
     assert abs(loss) < 0.02
 
 
-def test_the_energy_error_of_an_elastic_bar_falls_with_the_step():
-    _, coarse = ringing_bar(0.3, 10.0)
-    _, fine = ringing_bar(0.1, 10.0)
-    assert fine == pytest.approx(coarse / 3.0, rel=0.3)
+def test_the_energy_error_of_an_elastic_bar_is_small_with_any_step():
+    errors = {safety: abs(ringing_bar(safety, 10.0)[1]) for safety in (0.8, 0.3, 0.05)}
+    assert errors[0.8] < 1e-2
+    assert errors[0.3] < 4e-3
+    assert errors[0.05] < errors[0.3]
 
 
 @pytest.mark.parametrize(("end", "interval"), [(0.95, None), (0.9, 0.3), (0.1, 0.03), (0.1, 1.0)])
@@ -200,19 +201,21 @@ def test_a_law_that_gives_nan_stops_the_run_with_time_step_point_and_place(
     assert 0.0 < y < 0.5
     assert "finite" in error
     history = read_history(out)
-    assert all(np.isfinite(history[name]).all() for name in history.dtype.names)
+    # The spring of these tests states no elastic energy.
+    undefined = {"elastic_energy", "inelastic_work"}
+    assert all(np.isfinite(history[name]).all() for name in history.dtype.names if name not in undefined)
     assert 0.0 < read_collection(out)[-1].time < time
 
 
 def test_a_step_that_becomes_unstable_stops_the_run(tmp_path, monkeypatch, capsys, fresh_registry):
-    faster = "if trace(stress) < -300.0:\n        return 1e3"
+    faster = "if trace(stress) < -600.0:\n        return 1e3"
     changes = {"time.step": 2e-3}
     error, _ = fails(monkeypatch, capsys, tmp_path, FALLING_SPRING, changes, sound_speed=faster)
     assert re.search(r"t = \S+ s, step \d+: the fixed step 0\.002 s is above the stable one, now \S+e-05 s", error)
 
 
 def test_a_stable_step_that_vanishes_stops_the_run(tmp_path, monkeypatch, capsys, fresh_registry):
-    faster = "if trace(stress) < -300.0:\n        return 1e12"
+    faster = "if trace(stress) < -600.0:\n        return 1e12"
     error, _ = fails(monkeypatch, capsys, tmp_path, FALLING_SPRING, {}, sound_speed=faster)
     asked = r"the step would have to shrink to \S+ s, below the smallest one, \S+ s \(time\.smallest_step\)"
     assert re.search(rf"point \d+ of \S+ \(\S+\) at .* m: {asked}: sound speed 1e\+12 m/s", error)

@@ -31,6 +31,7 @@ SUITES: dict[str, tuple[str, ...]] = {
         "bagnold_incline",
         "mirror_symmetry",
         "shifted_column",
+        "heap_at_rest",
         "rest",
         "time_step_independence",
     ),
