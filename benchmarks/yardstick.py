@@ -155,24 +155,28 @@ class Yardstick:
         self.grid_m, self.grid_v = np.zeros(shape), np.zeros((*shape, 2))
         self.update_stress = make_update_stress(pointwise_law(body.law))
         self.signal_speed, self.time, self.steps = simulation.signal_speed, 0.0, 0
+        self.last_step = 0.0
+        self.wave_factor = simulation.signal_bounds[0].wave_factor
 
     def stable_step(self) -> float:
         """The largest stable step [s]: a cell over the fastest signal."""
         return self.h / max(self.signal_speed, float(np.hypot(*self.gravity) * self.h) ** 0.5)
 
     def step(self, dt: float) -> None:
-        """Advance by dt [s]."""
+        """Advance by dt [s]; as in the library, forces act from the middle of the last step to that of this."""
+        kick = 0.5 * (self.last_step + dt)
         self.grid_m[:] = 0.0
         self.grid_v[:] = 0.0
         points_to_grid(
-            self.x, self.v, self.c, self.stress, self.density, self.point_mass, self.grid_m, self.grid_v, self.h, dt
+            self.x, self.v, self.c, self.stress, self.density, self.point_mass, self.grid_m, self.grid_v, self.h, kick
         )
-        update_grid(self.grid_m, self.grid_v, *self.gravity, self.friction, dt)
+        update_grid(self.grid_m, self.grid_v, *self.gravity, self.friction, kick)
         grid_to_points(self.x, self.v, self.c, self.grid_v, self.h, dt)
-        self.signal_speed = self.update_stress(
+        self.signal_speed = self.wave_factor * self.update_stress(
             self.v, self.c, self.stress, self.density, self.states, self.parameters, dt
         )
         self.time += dt
+        self.last_step = dt
         self.steps += 1
 
     def advance_to(self, target: float) -> None:

@@ -1,5 +1,6 @@
 """The conformance suite: the built-in laws pass it, and each deliberate mistake is caught by the check of its name."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -107,7 +108,7 @@ def test_command_prints_one_line_per_check_and_exits_1_on_failure(tmp_path):
     path.write_text(SOUND_LAW.replace(*MISTAKES["sound speed"]))
     done = check(path)
     assert done.returncode == 1
-    assert "sound speed    FAIL" in done.stdout
+    assert re.search("sound speed +FAIL", done.stdout)
     assert "cemented_sand: fails sound speed" in done.stdout
     assert all(found.name in done.stdout for found in CHECKS)
     path.write_text(SOUND_LAW)

@@ -32,7 +32,9 @@ HISTORY_COLUMNS = (
     HistoryColumn("front_right", "m", "x to the right of which lies 1 % of the mass"),
     HistoryColumn("height", "m", "level above which lies one cell's worth of material, from the floor of the domain"),
     HistoryColumn("center_of_mass_height", "m", "height of the centre of mass above the floor of the domain"),
-    HistoryColumn("kinetic_energy", "J/m", "kinetic energy per width"),
+    HistoryColumn(
+        "kinetic_energy", "J/m", "kinetic energy per width in the middle of the last step, where velocities belong"
+    ),
     HistoryColumn("potential_energy", "J/m", "potential energy of gravity per width relative to the start"),
     HistoryColumn("internal_work", "J/m", "work of the stress per width since the start, elastic or not"),
     HistoryColumn(
