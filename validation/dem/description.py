@@ -6,6 +6,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 Positive = Annotated[float, Field(gt=0)]
 Floor = Literal["glued", "flat"]
+# A grain alone on a plane slows by 0.7 m/s2 only and rolls on when the pile has come to rest.
+ROLLING_REACH = 4.0
 
 
 class Described(BaseModel):
@@ -80,8 +82,9 @@ class Collapse(Case):
 
     @property
     def reach(self) -> float:
-        """Half length of the floor [m], well beyond the runout of the pile."""
-        return self.half_width * (2.0 + 3.5 * float(self.aspect_ratio) ** 0.75)
+        """Half length of the floor [m], well beyond the runout of the pile, and beyond single grains on a flat floor."""
+        pile = self.half_width * (2.0 + 3.5 * float(self.aspect_ratio) ** 0.75)
+        return ROLLING_REACH * pile if self.floor == "flat" else pile
 
 
 class ShearStage(Described):
