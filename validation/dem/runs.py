@@ -12,8 +12,8 @@ import numpy as np
 
 from materials.errors import InputError, SimulationError
 from mpm_core.output.atomic import write_text
-from validation.dem import collapse, compression, shear
-from validation.dem.description import AnyCase, Collapse, Compression, PlaneShear
+from validation.dem import collapse, compression, shear, shear_start
+from validation.dem.description import AnyCase, Collapse, Compression, PlaneShear, ShearStart
 from validation.dem.packing import Packing, cut
 from validation.dem.programs import LIGGGHTS, PROGRAMS, YADE, installed_version, run_program
 
@@ -150,7 +150,8 @@ def _perform_cell(run: Run, out: Path, folder: Path, time_limit: float, report: 
 
 
 def _kind(case: AnyCase) -> Any:
-    return {Collapse: collapse, PlaneShear: shear, Compression: compression}[type(case)]
+    modules = {Collapse: collapse, PlaneShear: shear, ShearStart: shear_start, Compression: compression}
+    return modules[type(case)]
 
 
 def _record(run: Run, files: Files, wall_time: float, steps: int, grains: int) -> dict[str, Any]:
