@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from validation.dem_report.fitted_laws import friction_of_mean_pressure
+from validation.dem_report.fitting_data import friction_of_mean_pressure
 from validation.dem_report.judgement import Judgement
 from validation.dem_report.reference_set import Ensemble, Rows
 from validation.grains.distance import surface_at

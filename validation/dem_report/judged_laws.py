@@ -1,6 +1,11 @@
 """The laws that are judged, one entry each; a law of a plugin joins by an entry of its own."""
 
-from validation.dem_report.fitted_laws import COMPRESSION_FILE, SHEAR_FILE, SLOW_SHEAR_FILE, JudgedLaw
+from validation.dem_report.fitted_laws import JudgedLaw
+from validation.dem_report.fitting_data import (
+    COMPRESSION_FILE,
+    SHEAR_FILE,
+    SLOW_SHEAR_FILE,
+)
 
 GRAINS = {"grain_density": 2450.0, "grain_diameter": 0.015}
 # Packings of spheres have ratios of 0.1 to 0.25; the collapse does not notice.

@@ -7,7 +7,8 @@ from pathlib import Path
 from materials import InputError, SimulationError, get_material
 from validation.case import Effort
 from validation.dem_report.column import column_of
-from validation.dem_report.fitted_laws import FittedLaw, JudgedLaw, fitted, write_data
+from validation.dem_report.fitted_laws import FittedLaw, JudgedLaw, fitted
+from validation.dem_report.fitting_data import write_data
 from validation.dem_report.judged_laws import JUDGED_LAWS
 from validation.dem_report.judgement import Announce, Bench, Judgement
 from validation.dem_report.reference_set import Ensemble, ReferenceSet, Scatter, scatter
