@@ -1,6 +1,6 @@
 """Parameters of the laws from the shear and the compression of the grains; nothing is fitted to a collapse.
 
-What a law is fitted to lies in files for `grainlaw calibrate` (`fitting_data`), so that each fit can be repeated by hand.
+What a law is fitted to lies in files for `grainlaw calibrate` (`fitting_data`), so that a fit can be repeated by hand.
 """
 
 from dataclasses import dataclass

@@ -38,7 +38,8 @@ def write_data(reference: ReferenceSet, folder: Path, grain_density: float, grai
     steady = sorted(reference.shear, key=lambda row: row["I"])
     slow = [row for row in steady if row["I"] <= SLOW]
     slow_density = grain_density * float(np.mean([row["phi"] for row in slow]))
-    critical = {"density": f"{slow_density:.6g}", "overconsolidation_ratio": "2"}
+    # Twice p is the size of Cam Clay's surface in the critical state; its softening needs shorter steps.
+    critical = {"density": f"{slow_density:.6g}", "overconsolidation_ratio": "2", "strain_step": "1e-3"}
     texts = {
         SHEAR_FILE: _shear_table(steady, grains, with_fraction=False),
         SLOW_SHEAR_FILE: _shear_table(slow, grains, with_fraction=False),
