@@ -25,10 +25,12 @@ def judged_runs(folders: Sequence[Path], references: Sequence[Path]) -> tuple[En
     """
     observed = [load_reference(path) for path in references]
     width = float(np.mean([reference.description["kernel_width"] for reference in observed]))
+    densities = {float(found) for reference in observed if (found := reference.description.get("grain_density"))}
+    density = densities.pop() if len(densities) == 1 else None
     ensemble = Ensemble(" and ".join(reference.label for reference in observed), tuple(observed))
     judgements = []
     for folder in folders:
-        run = observe_run(folder, width)
+        run = observe_run(folder, width, density)
         judgements.append(Judgement(folder.name, ensemble, run, compare(run, observed)))
     return ensemble, judgements
 
