@@ -19,7 +19,7 @@ MASS = DENSITY * np.pi / 6.0 * DIAMETER**3
 
 
 def stack():
-    """Contacts of spheres on top of one another: centres above and below, and the force on the upper, that of all above."""
+    """Contacts of spheres on top of one another: centres above and below, and the force on the upper of the two."""
     centres = np.column_stack([np.zeros(COUNT), np.full(COUNT, 0.03), (np.arange(COUNT) + 0.5) * DIAMETER])
     above = np.arange(COUNT - 1, 0, -1) * MASS * GRAVITY
     return centres[1:], centres[:-1], np.column_stack([np.zeros((COUNT - 1, 2)), above])
