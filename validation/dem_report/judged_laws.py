@@ -17,6 +17,7 @@ POISSON_RATIO = {"poisson_ratio": 0.2}
 # shear it runs to a ratio of 13, whose surface no column of these sizes reaches: it stands.
 CLAY = {"compression_index": 0.04, "swelling_index": 0.008, "overconsolidation_ratio": 1.0}
 
+# The first one is that of a quick report.
 JUDGED_LAWS = (
     JudgedLaw(
         law="mu_i_lc",

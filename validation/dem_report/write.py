@@ -64,7 +64,7 @@ def _content(report: Report, command: str) -> dict[str, Any]:
         "command": command,
         "effort": str(report.effort),
         "cell_size": report.cell_size,
-        "controls_differ": report.controls_differ,
+        "controls_noticed": not report.missed,
         "scatter": [_scatter(found) for found in report.scatter],
         "laws": [_law(found) for found in report.laws],
         "unfitted": report.unfitted,
