@@ -125,7 +125,7 @@ class Scatter:
 
 
 def scatter(reference: ReferenceSet) -> list[Scatter]:
-    """Seed against seed and code against code on each column, and flat against glued floor."""
+    """Seed against seed and code against code on each column, flat against glued floor, variants against the column."""
     found = []
     for ensemble in reference.ensembles.values():
         pairs = list(combinations(ensemble.runs, 2))
@@ -135,6 +135,10 @@ def scatter(reference: ReferenceSet) -> list[Scatter]:
             _scatter("seed against seed", ensemble.case, same),
             _scatter("code against code", ensemble.case, across),
         ]
+        base = reference.ensembles.get(ensemble.case.rpartition("-")[0])
+        if base is not None:
+            packings = [(one, other) for one in ensemble.runs for other in base.runs if _code(one) == _code(other)]
+            found.append(_scatter("against the plain column", ensemble.case, packings))
         flat = reference.ensembles.get(ensemble.case.replace("glued", "flat"))
         if flat is not None and flat is not ensemble:
             floors = [(one, other) for one in flat.runs for other in ensemble.runs if _code(one) == _code(other)]

@@ -3,14 +3,22 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from validation.dem_report.figures import distance_figure, profile_figure, series_figure, shear_figure
+from validation.dem_report.figures import (
+    distance_figure,
+    profile_figure,
+    series_figure,
+    shear_figure,
+    stress_figure,
+)
 from validation.dem_report.judgement import Judgement
 from validation.dem_report.reference_set import Ensemble, Rows
 from validation.dem_report.report import Report
 from validation.dem_report.tables import (
     Table,
     cost_table,
+    coverage_table,
     parameter_table,
+    profile_table,
     scatter_table,
     summary_table,
     variant_table,
@@ -76,7 +84,13 @@ def sections(report: Report, shear: Rows) -> list[Section]:
             Section("What limits the laws", tables=(variant_table("What limits the laws", note, report.limits),))
         )
     cost = cost_table(report)
-    return [*parts, Section(cost.title, tables=(cost,)), Section("What was modelled", (MODELLED, CONTINUUM, LEFT_OUT))]
+    runs = coverage_table()
+    parts += [
+        Section(cost.title, tables=(cost,)),
+        Section(runs.title, tables=(runs,)),
+        Section("What was modelled", (MODELLED, CONTINUUM, LEFT_OUT)),
+    ]
+    return parts
 
 
 def _controls_said(report: Report) -> str:
@@ -97,7 +111,7 @@ def _fits(report: Report, shear: Rows) -> Section:
 def _column(report: Report, ensemble: Ensemble) -> Section:
     judgements = report.of_column(ensemble)
     table = verdict_table(ensemble, judgements)
-    return Section(table.title, tables=(table,), figures=column_figures(ensemble, judgements))
+    return Section(table.title, tables=(table, profile_table(judgements)), figures=column_figures(ensemble, judgements))
 
 
 def column_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple[ReportFigure, ...]:
@@ -106,8 +120,17 @@ def column_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple
     return (
         ReportFigure(profile_figure(ensemble, judgements), f"Surfaces over time, {name}."),
         ReportFigure(series_figure(ensemble, judgements), f"Runout, height, energy, solid fraction, {name}."),
+        *_stress_figures(ensemble, judgements),
         ReportFigure(
             distance_figure(judgements, PROFILE_BAND),
             f"E_A over time, {name}; green: indistinguishable, yellow: acceptable; shaded: nearest to farthest.",
         ),
     )
+
+
+def _stress_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple[ReportFigure, ...]:
+    """Stress along the axis, where runs of the grains tell their contacts."""
+    if not any("stress_zz" in run.snapshots for run in ensemble.runs):
+        return ()
+    caption = f"Stress along the axis, {ensemble.case}; forces between the grains, no fluctuations."
+    return (ReportFigure(stress_figure(ensemble, judgements), caption),)
