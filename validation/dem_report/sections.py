@@ -55,12 +55,13 @@ class ReportFigure:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the page."""
+    """A part of the page; `command` makes its figures, where it is not the page's own."""
 
     title: str
     paragraphs: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
     figures: tuple[ReportFigure, ...] = ()
+    command: str = ""
 
 
 def sections(report: Report, shear: Rows) -> list[Section]:
