@@ -36,13 +36,12 @@ def judged_runs(folders: Sequence[Path], references: Sequence[Path]) -> tuple[En
     return ensemble, judgements
 
 
-def write_page(folder: Path, ensemble: Ensemble, judgements: Sequence[Judgement]) -> Path:
-    """Write a self-contained page with the table and the figures; returns its path."""
+def write_page(folder: Path, ensemble: Ensemble, judgements: Sequence[Judgement], command: str) -> Path:
+    """Write a self-contained page with the table and the figures that `command` makes; returns its path."""
     table = comparison_table(ensemble, judgements)
     section = Section(
         table.title, tables=(table, profile_table(judgements)), figures=column_figures(ensemble, judgements)
     )
-    command = "grainlaw compare --dem"
     text = rendered("dem.html", TITLE, (), (section,), command)
     atomic.write_text(folder / PAGE, text)
     atomic.write_text(folder / SECTIONS, sections_as_json(TITLE, command, (section,)))
