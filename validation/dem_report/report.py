@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from materials import InputError, SimulationError, get_material
-from validation.case import Effort
+from validation.case import Effort, Evidence
+from validation.cases import aluminium_bars
 from validation.dem_report.column import column_of
 from validation.dem_report.fitted_laws import FittedLaw, JudgedLaw, fitted
 from validation.dem_report.fitting_data import write_data
@@ -32,6 +33,7 @@ class Report:
     judgements  one for each law and column
     controls    deliberate mistakes, which must be noticed
     limits      laws with one thing changed
+    experiment  aluminium bars, against their published deposit; None in a quick report
     """
 
     effort: Effort
@@ -43,6 +45,7 @@ class Report:
     judgements: list[Judgement]
     controls: list[Judgement]
     limits: list[Judgement]
+    experiment: Evidence | None
 
     @property
     def missed(self) -> list[Judgement]:
@@ -82,6 +85,7 @@ def make_report(reference: ReferenceSet, folder: Path, effort: Effort, announce:
         judgements=[bench.judge(law, ensemble) for ensemble in judged_columns for law in laws],
         controls=_varied(bench, reference, laws, judged_columns, CONTROLS),
         limits=[] if is_quick else _varied(bench, reference, laws, columns, LIMITS),
+        experiment=None if is_quick else aluminium_bars.measure(Effort.FULL),
     )
 
 

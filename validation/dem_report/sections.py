@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from validation.case import Evidence
+from validation.cases import aluminium_bars
 from validation.dem_report.figures import (
     distance_figure,
     profile_figure,
@@ -18,6 +20,7 @@ from validation.dem_report.tables import (
     cost_table,
     coverage_table,
     parameter_table,
+    percent,
     profile_table,
     scatter_table,
     summary_table,
@@ -25,6 +28,7 @@ from validation.dem_report.tables import (
     verdict_table,
 )
 from validation.grains.distance import PROFILE_BAND
+from validation.report.plots import figure_image
 
 MODELLED = (
     "Both sides are observed by the same functions. Solid fraction: each grain, or material point, is spread by a "
@@ -84,6 +88,8 @@ def sections(report: Report, shear: Rows) -> list[Section]:
         parts.append(
             Section("What limits the laws", tables=(variant_table("What limits the laws", note, report.limits),))
         )
+    if report.experiment is not None:
+        parts.append(_experiment(report.experiment))
     cost = cost_table(report)
     runs = coverage_table()
     parts += [
@@ -107,6 +113,31 @@ def _fits(report: Report, shear: Rows) -> Section:
     image = shear_figure(shear, {law.judged.title: law.curve for law in report.laws})
     caption = "Plane shear of the grains: friction over the mean pressure and solid fraction; fitted laws."
     return Section(table.title, (*remarks, *commands), (table,), (ReportFigure(image, caption),))
+
+
+def _experiment(found: Evidence) -> Section:
+    """The solver against an experiment that it has nothing in common with."""
+    case = aluminium_bars.CASE
+    rows = tuple(
+        (
+            one.name,
+            one.unit,
+            f"{one.measured:.4g}",
+            "" if one.reference is None else f"{one.reference:.4g}",
+            percent(one.error),
+            percent(one.band),
+            "yes" if one.within_band else "no",
+        )
+        for one in found.measurements
+    )
+    columns = ("quantity", "unit", "computed", "measured", "error", "band", "within")
+    title = "A published experiment: aluminium bars"
+    figures = tuple(
+        ReportFigure(figure_image(figure), f"{figure.title}: {case.reference}.") for figure in found.figures
+    )
+    paragraphs = (f"The solver, {case.proves}. {case.reference}.", *(f"{note}." for note in found.notes))
+    table = Table(title, case.norm, columns, rows)
+    return Section(title, paragraphs, (table,), figures, f"grainlaw validate {case.name} --out DIR")
 
 
 def _column(report: Report, ensemble: Ensemble) -> Section:

@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -74,6 +75,7 @@ def _content(report: Report, command: str) -> dict[str, Any]:
         "judgements": [_judgement(found) for found in report.judgements],
         "controls": [_judgement(found) for found in report.controls],
         "limits": [_judgement(found) for found in report.limits],
+        "experiment": None if report.experiment is None else [asdict(one) for one in report.experiment.measurements],
     }
 
 
