@@ -113,6 +113,7 @@ def stress_figure(ensemble: Ensemble, judgements: Sequence[Judgement]) -> str:
         axes.set_title(name, fontsize=9)
     for axes in all_axes[:, 0]:
         axes.set_ylabel("z [m]", fontsize=9)
+        axes.set_ylim(0.0, 1.2 * max(float(run.of("height")[0]) for run in told))
     _legend(figure, all_axes[0, 0])
     return data_uri(figure)
 

@@ -156,7 +156,7 @@ def cost_table(report: Report) -> Table:
     for ensemble in report.columns:
         for code in sorted({str(run.description.get("code", "")) for run in ensemble.runs}):
             runs = [run.description for run in ensemble.runs if run.description.get("code") == code]
-            seconds = sum(run.get("wall_time") or math.nan for run in runs) / len(runs)
+            seconds = sum(run.get("cpu_time") or run.get("wall_time") or math.nan for run in runs) / len(runs)
             work = sum((run.get("grains") or math.nan) * (run.get("steps") or math.nan) for run in runs) / len(runs)
             rows.append((f"a = {ensemble.aspect_ratio:g}", code, *_cost(seconds, work), "", ""))
         for judged in report.of_column(ensemble):
@@ -166,8 +166,8 @@ def cost_table(report: Report) -> Table:
                 cells = _cost(float(cost["cpu_time"]), float(cost["points"]) * float(cost["steps"]))
                 rows.append((f"a = {ensemble.aspect_ratio:g}", judged.name, *cells, percent(area), judged.verdict))
     note = (
-        "Seconds on one core: wall time of the grains' runs, which have the whole width and depth; "
-        "CPU time of the laws, which run half of the column in plane strain."
+        "Seconds of one core. Grains: CPU time where a run told it, else wall time on a machine that also did other "
+        "work; the whole width and a depth of four grains, without the settling. Laws: CPU time, half of the column."
     )
     columns = ("column", "what", "s", "million grain- or point-steps", "million/s", "E_A", "verdict")
     return Table("Cost", note, columns, tuple(rows))
