@@ -14,6 +14,7 @@ from grainlaw.element_command import element
 from grainlaw.materials_command import materials
 from grainlaw.new_law_command import new_law
 from grainlaw.plan_command import plan
+from grainlaw.report_command import report
 from grainlaw.run_command import run
 from grainlaw.validate_command import validate
 from materials import InputError, SimulationError
@@ -33,6 +34,7 @@ app.command("run")(run)
 app.command("plan")(plan)
 app.command("compare")(compare)
 app.command("validate")(validate)
+app.command("report")(report)
 app.command("new-law")(new_law)
 app.command("check")(check)
 app.add_typer(dem, name="dem")

@@ -82,7 +82,9 @@ def _judge(folders: list[Path], dem: list[Path], out: Path | None) -> None:
     ensemble, judgements = judged_runs(folders, dem)
     print_table(comparison_table(ensemble, judgements))
     if out is not None:
-        typer.echo(f"  {write_page(out, ensemble, judgements)}")
+        references = " ".join(f"--dem {path}" for path in dem)
+        command = f"grainlaw compare {' '.join(str(path) for path in folders)} {references} --out {out}"
+        typer.echo(f"  {write_page(out, ensemble, judgements, command)}")
 
 
 def _draw(runs: list[tuple[str, "RunFolder"]], out: Path, field: str) -> None:

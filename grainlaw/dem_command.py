@@ -12,20 +12,22 @@ dem = typer.Typer(
 
 @dem.command("list")
 def list_cases() -> None:
-    """List the cases: what each is, and the packings that each code runs by default."""
+    """List the cases: what each is, the packings that each code runs by default, and what the reference set lacks."""
     from rich import box
     from rich.console import Console
     from rich.table import Table
 
     from validation.dem.catalogue import CASES
+    from validation.dem.coverage import missing_runs, seeds_told
+    from validation.dem_report.reference_set import REFERENCE
 
     table = Table(box=box.SIMPLE_HEAD)
-    for heading in ("case", "what it is", "LIGGGHTS seeds", "YADE seeds"):
+    for heading in ("case", "what it is", "LIGGGHTS seeds", "YADE seeds", "not in the reference set"):
         table.add_column(heading, no_wrap=heading == "case")
     for case in CASES:
         seeds = (" ".join(str(seed) for seed in case.seeds(code)) for code in ("liggghts", "yade"))
-        table.add_row(case.name, case.purpose, *seeds)
-    Console(width=120, markup=False).print(table)
+        table.add_row(case.name, case.purpose, *seeds, seeds_told(missing_runs(case, REFERENCE)))
+    Console(width=140, markup=False).print(table)
 
 
 @dem.command("run")

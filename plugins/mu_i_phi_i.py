@@ -19,8 +19,9 @@ for the sets below at I = 0.1: the delay regularises them, and elasticity (1) bo
 
 Over a step I is the unknown. Given I, psi is known and (1) with (4) is a quadratic in sqrt(p); the excess of the trial
 stress over (5) is positive at I = 0 and negative once the trial shear has all become plastic: the root is bracketed,
-and found by the secant method with bisection. Open points neither flow nor dilate: phi_j stays, and they close where
-they opened.
+and found by the secant method with bisection. Looser than phi_min, compaction can take the pressure faster than any
+I p^(1/2) uses up the trial shear; then there is no root, and the grains part: p = 0, phi_j = phi. Open points neither
+flow nor dilate: phi_j stays, and they close where they opened.
 
 Source: dilatancy (3) after Roux & Radjai (1998) and Pailha & Pouliquen (2009), J. Fluid Mech. 633, a = 4.09 there;
 phi(I) as in Forterre & Pouliquen (2008); well-posedness: Heyman, Delannay, Tabuteau & Valance (2017), J. Fluid Mech.
@@ -60,6 +61,8 @@ from materials import (
 # Of the trial stress.
 TOLERANCE = 1e-12
 MAXIMUM_ITERATIONS = 100
+# Beyond it no pressure is left: at 1000 1/s and 15 mm less than 1e-6 Pa.
+LARGEST_NUMBER = 1e6
 
 
 class Parameters(NamedTuple):
@@ -137,6 +140,8 @@ def update(
     trial_shear_stress = half_norm(trial)
     increment = Increment(compression, solid_fraction, trial_shear_stress, stiffness, dt)
     flow = flow_of_step(increment, state.inertial_number, parameters)
+    if flow.pressure == 0.0:
+        return isotropic(0.0), State(solid_fraction, 0.0)
     jamming = solid_fraction / (1.0 + flow.pressure / parameters.bulk_modulus)
     if flow.number == 0.0:
         return assembled_stress(flow.pressure, trial), State(state.jamming_solid_fraction, 0.0)
@@ -146,7 +151,10 @@ def update(
 
 @pointwise
 def flow_of_step(increment: Increment, guess: float, parameters: Parameters) -> Flow:
-    """The step whose shear stress is the strength at its own inertial number, from the I of the step before."""
+    """The step whose shear stress is the strength at its own inertial number, from the I of the step before.
+
+    Without pressure where there is no such number.
+    """
     still = flow_at(0.0, increment, parameters)
     if still.shear_stress <= still.strength:
         return still
@@ -166,6 +174,8 @@ def flow_of_step(increment: Increment, guess: float, parameters: Parameters) -> 
             trial = flow.number + excess * (flow.number - last.number) / (last_excess - excess)
         stalled = abs(excess) > 0.5 * abs(last_excess)
         if upper == math.inf:
+            if lower > LARGEST_NUMBER:
+                return Flow(lower, 0.0, 0.0, 0.0)
             trial = min(max(trial, 2.0 * lower), 100.0 * lower)
         elif stalled or not lower < trial < upper:
             trial = 0.5 * (lower + upper)

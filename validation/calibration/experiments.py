@@ -2,7 +2,7 @@
 
 The element tests with a driven strain follow the strains of the data from row to row, so that unloading is a matter of
 the data. `steady-shear` holds the normal stress on the plane of shear and shears at each inertial number until nothing
-changes any more, as a plane shear cell does.
+changes any more, as a plane shear cell does; `shear-start` follows the strains of the data at one inertial number.
 """
 
 import math
@@ -65,6 +65,21 @@ class SteadyShearSettings(NamedTuple):
         float, Parameter("1", "strain eps_xy at each inertial number, to become steady", "(0, inf)")
     ] = 10.0
     strain_step: StrainStep = 5e-3
+
+
+class ShearStartSettings(NamedTuple):
+    """Settings of the start of shear at held normal stress."""
+
+    held_normal_stress: Annotated[
+        float, Parameter("Pa", "held compressive stress on the plane of shear", "(0, inf)")
+    ] = 1e3
+    density: InitialDensity = 0.0
+    grain_density: GrainDensity = 2450.0
+    grain_diameter: GrainDiameter = 0.005
+    held_inertial_number: Annotated[
+        float, Parameter("1", "I of the shear, with gamma_dot = sqrt(1/2 D_d:D_d)", "(0, inf)")
+    ] = 0.01
+    strain_step: StrainStep = 2e-4
 
 
 @dataclass(frozen=True)
@@ -142,27 +157,48 @@ def _strained(name: str, controls: Mapping[str, Control]) -> Experiment:
 
 def steady_shear(specimen: Specimen, settings: SteadyShearSettings, numbers: Array) -> ElementResult:
     """The steady state at each inertial number, one after the other. Raises SimulationError where it is not steady."""
-    stress = isotropic(-settings.held_normal_stress)
-    density = specimen.density(settings.held_normal_stress, settings.density)
-    start = point_at_rest(stress, density, specimen.law.initial_state(stress, density, specimen.parameters))
-    unit_number = inertial_number(1.0, settings.held_normal_stress, settings.grain_diameter, settings.grain_density)
+    start, unit_number = _pressed(specimen, settings)
     half = math.ceil(0.5 * settings.strain_to_steady / settings.strain_step)
     points = [start]
     for number in numbers:
         rate = float(number) / unit_number
-        path = LoadingPath(
-            dt=0.5 * settings.strain_to_steady / half / rate,
-            rates=np.full(2 * half, rate),
-            direction=SHEAR,
-            free=NORMAL,
-            held=NORMAL,
-            target=settings.held_normal_stress,
-            held_name="normal stress",
-        )
+        path = _at_normal_stress(settings, 0.5 * settings.strain_to_steady / half / rate, np.full(2 * half, rate))
         halfway, end = follow_path(specimen, path, points[-1], half)
         _check_steady(specimen, settings, halfway, end, float(number))
         points.append(end)
     return ElementResult(specimen, "steady-shear", settings, 2 * half * len(numbers), points)
+
+
+def shear_start(specimen: Specimen, settings: ShearStartSettings, strains: Array) -> ElementResult:
+    """The point at each strain, sheared from an isotropic state at one inertial number."""
+    start, unit_number = _pressed(specimen, settings)
+    rate = settings.held_inertial_number / unit_number
+    changes = np.diff(strains, prepend=0.0)
+    substeps = max(1, math.ceil(float(np.max(np.abs(changes))) / settings.strain_step))
+    dt = max(float(np.max(np.abs(changes))), 1e-300) / substeps / rate
+    path = _at_normal_stress(settings, dt, np.repeat(changes / (substeps * dt), substeps))
+    points = (start, *follow_path(specimen, path, start, substeps))
+    return ElementResult(specimen, "shear-start", settings, path.steps, points)
+
+
+def _pressed(specimen: Specimen, settings: SteadyShearSettings | ShearStartSettings) -> tuple[Point, float]:
+    """The isotropic point at the held normal stress, and the inertial number of the unit rate there."""
+    stress = isotropic(-settings.held_normal_stress)
+    density = specimen.density(settings.held_normal_stress, settings.density)
+    start = point_at_rest(stress, density, specimen.law.initial_state(stress, density, specimen.parameters))
+    return start, inertial_number(1.0, settings.held_normal_stress, settings.grain_diameter, settings.grain_density)
+
+
+def _at_normal_stress(settings: SteadyShearSettings | ShearStartSettings, dt: float, rates: Array) -> LoadingPath:
+    return LoadingPath(
+        dt=dt,
+        rates=rates,
+        direction=SHEAR,
+        free=NORMAL,
+        held=NORMAL,
+        target=settings.held_normal_stress,
+        held_name="normal stress",
+    )
 
 
 def _check_steady(specimen: Specimen, settings: SteadyShearSettings, halfway: Point, end: Point, number: float) -> None:
@@ -184,6 +220,13 @@ EXPERIMENTS = {
         _strained("isotropic", VOLUMETRIC),
         _strained("simple-shear", SHEARED),
         Experiment("steady-shear", "steady shear at held normal stress", NUMBERED, SteadyShearSettings, steady_shear),
+        Experiment(
+            "shear-start",
+            "the start of shear at held normal stress and inertial number",
+            SHEARED,
+            ShearStartSettings,
+            shear_start,
+        ),
     )
 }
 

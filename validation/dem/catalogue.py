@@ -1,6 +1,16 @@
 """The cases that the reference set is made of, in the order of their worth."""
 
-from validation.dem.description import AnyCase, Collapse, Compression, Contact, Floor, Grains, PlaneShear, ShearStage
+from validation.dem.description import (
+    AnyCase,
+    Collapse,
+    Compression,
+    Contact,
+    Floor,
+    Grains,
+    PlaneShear,
+    ShearStage,
+    ShearStart,
+)
 
 END_TIMES = {1: 1.0, 2: 1.2, 4: 1.5, 6: 1.8}
 
@@ -47,6 +57,11 @@ CASES: tuple[AnyCase, ...] = (
         purpose="friction and solid fraction over the inertial number at 5 kPa",
         stages=SHEAR_STAGES,
         liggghts_seeds=(1, 2, 3),
+    ),
+    ShearStart(
+        name="shear-start",
+        purpose="peak and dilation of a packing as dense as the columns, at 5 kPa",
+        liggghts_seeds=FOUR,
     ),
     Compression(name="compression", purpose="isotropic compression and unloading up to 200 kPa", liggghts_seeds=(1, 2)),
     column(1, "glued", FOUR, TWO),

@@ -6,6 +6,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 Positive = Annotated[float, Field(gt=0)]
 Floor = Literal["glued", "flat"]
+# A grain alone on a plane slows by 0.7 m/s2 only and rolls on when the pile has come to rest.
+ROLLING_REACH = 4.0
 
 
 class Described(BaseModel):
@@ -80,8 +82,9 @@ class Collapse(Case):
 
     @property
     def reach(self) -> float:
-        """Half length of the floor [m], well beyond the runout of the pile."""
-        return self.half_width * (2.0 + 3.5 * float(self.aspect_ratio) ** 0.75)
+        """Half length of the floor [m], well beyond the runout of the pile and, on a flat floor, of single grains."""
+        pile = self.half_width * (2.0 + 3.5 * float(self.aspect_ratio) ** 0.75)
+        return ROLLING_REACH * pile if self.floor == "flat" else pile
 
 
 class ShearStage(Described):
@@ -96,18 +99,37 @@ class ShearStage(Described):
     average_strain: Positive
 
 
-class PlaneShear(Case):
+class ShearCell(Case):
     """Plane shear without gravity between two rough walls of glued grains, periodic along and across.
 
     The lower wall stands; the upper one moves at a fixed speed and is free to rise, under a fixed normal stress.
     """
 
-    kind: Literal["shear"] = "shear"
     length: Positive = 0.18
     depth: Positive = 0.09
     height: Positive = 0.21
     normal_stress: Positive = 5000.0
+
+
+class PlaneShear(ShearCell):
+    """Steady shear at several speeds, one after the other."""
+
+    kind: Literal["shear"] = "shear"
     stages: tuple[ShearStage, ...]
+
+
+class ShearStart(ShearCell):
+    """The start of shear of a dense packing, at one speed of the wall.
+
+    The packing is pressed together with the friction that makes columns dense, rests, and is sheared with the full one;
+    averages are taken over blocks of the nominal strain `block_strain`, up to `final_strain`.
+    """
+
+    kind: Literal["shear-start"] = "shear-start"
+    nominal_inertial_number: Positive = 0.03
+    final_strain: Positive = 1.0
+    block_strain: Positive = 0.025
+    resting_time: Positive = 1.2
 
 
 class Compression(Case):
@@ -124,4 +146,4 @@ class Compression(Case):
     gas_fraction: Annotated[float, Field(gt=0, lt=0.4)] = 0.3
 
 
-AnyCase = Collapse | PlaneShear | Compression
+AnyCase = Collapse | PlaneShear | ShearStart | Compression

@@ -1,6 +1,7 @@
 """Start LIGGGHTS and YADE: time limit, log, and their failures as one clear line."""
 
 import re
+import resource
 import shutil
 import subprocess
 import time
@@ -62,17 +63,25 @@ def installed_version(program: Program) -> str:
     return found.group(1).rstrip(",") if found else "unknown"
 
 
+@dataclass(frozen=True)
+class Cost:
+    """Wall time and processor time of a run [s]."""
+
+    wall: float
+    cpu: float
+
+
 def run_program(
     program: Program, folder: Path, deck: str, time_limit: float, report: Callable[[str], None] = lambda _: None
-) -> float:
-    """Run `deck` in `folder` with its output in `log.txt`; return the wall time [s].
+) -> Cost:
+    """Run `deck` in `folder` with its output in `log.txt`; return what it cost.
 
     `report` is given the last line of the log now and then. Raises SimulationError with the cause if the code fails or
     takes longer than `time_limit` [s], InputError if it is not installed.
     """
     command = program.command(deck)
     log = folder / "log.txt"
-    start = time.monotonic()
+    start, used = time.monotonic(), _processor_time()
     with log.open("wb") as output:
         process = subprocess.Popen(
             command, cwd=folder, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT
@@ -91,7 +100,13 @@ def run_program(
     cause = failure(text)
     if process.returncode != 0 or cause:
         raise SimulationError(f"{program.name}: {cause or f'exit code {process.returncode}'}; see {log}")
-    return time.monotonic() - start
+    return Cost(time.monotonic() - start, _processor_time() - used)
+
+
+def _processor_time() -> float:
+    """Of all child processes that have ended [s]."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def failure(log: str) -> str:

@@ -36,19 +36,26 @@ def reduce_runs(folder: Path, into: Path) -> list[Path]:
             path = into / COLLAPSES / f"{record['case']}_{record['code']}_s{record['seed']}.h5"
             write_observation(path, observe_folder(run))
             written.append(path)
-    cells = {
-        kind: [(run, record) for run, record in runs if record["kind"] == kind] for kind in ("shear", "compression")
-    }
-    for kind, rows in (("shear", _shear_rows), ("compression", _compression_rows)):
-        if cells[kind]:
-            path = into / f"{kind}.csv"
-            write_text(path, _table([row for run, record in cells[kind] for row in rows(run, record)]))
+    cells = {kind: [(run, record) for run, record in runs if record["kind"] == kind] for kind in ROWS}
+    for kind, found in cells.items():
+        if found:
+            path = into / f"{kind.replace('-', '_')}.csv"
+            write_text(path, _table([row for run, record in found for row in ROWS[kind](run, record)]))
             written.append(path)
-    provenance = {
-        f"{record['case']}/{run.name}": _provenance(record) for kind in cells.values() for run, record in kind
-    }
-    write_text(into / PROVENANCE, json.dumps(provenance, indent=1) + "\n")
-    return [*written, into / PROVENANCE]
+    if any(cells.values()):
+        written.append(_write_provenance(into, [entry for found in cells.values() for entry in found]))
+    return written
+
+
+def _write_provenance(into: Path, cells: list[tuple[Path, dict[str, Any]]]) -> Path:
+    """Say what the tables were made from; what a table that is not made anew was made from stays."""
+    path = into / PROVENANCE
+    known = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    replaced = {record["kind"] for _, record in cells}
+    kept = {name: record for name, record in known.items() if record["kind"] not in replaced}
+    made = {f"{record['case']}/{run.name}": _provenance(record) for run, record in cells}
+    write_text(path, json.dumps(kept | made, indent=1) + "\n")
+    return path
 
 
 def _shear_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
@@ -98,6 +105,25 @@ def _compression_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]
         }
         for row in chosen
     ]
+
+
+def _shear_start_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
+    """Friction and solid fraction over the strain; the first row tells how dense the packing was."""
+    return [
+        {
+            "code": record["code"],
+            "seed": record["seed"],
+            "strain": row["strain"],
+            "I": row["inertial_number"],
+            "phi": row["solid_fraction"],
+            "tau_over_p3": round(float(row["shear_stress"]) / float(row["pressure"]), 6),
+            "szz": row["normal_stress"],
+        }
+        for row in _read(run / record["table"])
+    ]
+
+
+ROWS = {"shear": _shear_rows, "shear-start": _shear_start_rows, "compression": _compression_rows}
 
 
 def _provenance(record: dict[str, Any]) -> dict[str, Any]:

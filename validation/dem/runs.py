@@ -12,10 +12,10 @@ import numpy as np
 
 from materials.errors import InputError, SimulationError
 from mpm_core.output.atomic import write_text
-from validation.dem import collapse, compression, shear
-from validation.dem.description import AnyCase, Collapse, Compression, PlaneShear
+from validation.dem import collapse, compression, shear, shear_start
+from validation.dem.description import AnyCase, Collapse, Compression, PlaneShear, ShearStart
 from validation.dem.packing import Packing, cut
-from validation.dem.programs import LIGGGHTS, PROGRAMS, YADE, installed_version, run_program
+from validation.dem.programs import LIGGGHTS, PROGRAMS, YADE, Cost, installed_version, run_program
 
 Files = dict[str, str]
 Report = Callable[[str], None]
@@ -114,7 +114,7 @@ def _perform_collapse(run: Run, out: Path, folder: Path, time_limit: float, repo
     files = collapse.release_files(case, run.code, run.seed, packing)
     _write(folder, files)
     program = PROGRAMS[run.code]
-    wall_time = run_program(program, folder, "deck.in" if program is LIGGGHTS else "deck.py", time_limit, report)
+    cost = run_program(program, folder, "deck.in" if program is LIGGGHTS else "deck.py", time_limit, report)
     if program is YADE and "finished" not in (folder / "log.txt").read_text(encoding="utf-8", errors="replace"):
         raise SimulationError(f"YADE stopped before the end; see {folder / 'log.txt'}")
     numbers = [count * collapse.output_steps(case) for count in range(collapse.outputs(case) + 1)]
@@ -122,7 +122,7 @@ def _perform_collapse(run: Run, out: Path, folder: Path, time_limit: float, repo
     if missing:
         raise SimulationError(f"{program.name} did not write {missing[0]}; see {folder / 'log.txt'}")
     steps = numbers[-1] + round(case.relaxation / case.time_step)
-    return _record(run, files, wall_time, steps, len(packing)) | {
+    return _record(run, files, cost, steps, len(packing)) | {
         "floor": case.floor,
         "half_width": case.half_width,
         "initial_height": case.initial_height,
@@ -144,16 +144,17 @@ def _perform_cell(run: Run, out: Path, folder: Path, time_limit: float, report: 
     kind = _kind(run.case)
     files = kind.files(run.case, run.seed)
     _write(folder, files)
-    wall_time = run_program(LIGGGHTS, folder, "deck.in", time_limit, report)
+    cost = run_program(LIGGGHTS, folder, "deck.in", time_limit, report)
     found = kind.reduce(run.case, folder)
-    return _record(run, files, wall_time, found.steps, found.grains) | {"table": found.table}
+    return _record(run, files, cost, found.steps, found.grains) | {"table": found.table}
 
 
 def _kind(case: AnyCase) -> Any:
-    return {Collapse: collapse, PlaneShear: shear, Compression: compression}[type(case)]
+    modules = {Collapse: collapse, PlaneShear: shear, ShearStart: shear_start, Compression: compression}
+    return modules[type(case)]
 
 
-def _record(run: Run, files: Files, wall_time: float, steps: int, grains: int) -> dict[str, Any]:
+def _record(run: Run, files: Files, cost: Cost, steps: int, grains: int) -> dict[str, Any]:
     case = run.case
     return {
         "status": "done",
@@ -164,10 +165,11 @@ def _record(run: Run, files: Files, wall_time: float, steps: int, grains: int) -
         "seed": run.seed,
         "deck_hash": files_hash(files),
         "made": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
-        "wall_time": round(wall_time, 2),
+        "wall_time": round(cost.wall, 2),
+        "cpu_time": round(cost.cpu, 2),
         "steps": steps,
         "grains": grains,
-        "grain_steps_per_second": round(steps * grains / wall_time),
+        "grain_steps_per_second": round(steps * grains / cost.cpu),
         "time_step": case.time_step,
         "grain_density": case.grains.density,
         "mean_diameter": case.grains.mean_diameter,

@@ -10,7 +10,7 @@ import numpy as np
 
 from mpm_core.output.atomic import write_text
 from validation.dem.cell import Reduced
-from validation.dem.description import PlaneShear, ShearStage
+from validation.dem.description import PlaneShear, ShearCell, ShearStage
 from validation.dem.liggghts import contact_values, data_file, decks, template_texts
 from validation.dem.packing import Array, Packing, loose, mean_volume, random_radii
 
@@ -45,6 +45,20 @@ COLUMNS = (
 
 def files(case: PlaneShear, seed: int) -> Files:
     """Deck and data of the run of all inertial numbers, the fastest first."""
+    data, values = cell(case, seed)
+    deck = decks().get_template("shear.in.j2")
+    return {
+        "grains.data": data,
+        "deck.in": deck.render(
+            values,
+            stages=[_stage(case, stage) for stage in case.stages],
+            **contact_values(case.contact, case.contact.friction),
+        ),
+    }
+
+
+def cell(case: ShearCell, seed: int) -> tuple[str, dict[str, Any]]:
+    """Data of a gas between two walls, and what a deck needs to press it together and to average over its height."""
     grains = case.grains
     random = np.random.default_rng(seed)
     area = case.length * case.depth
@@ -61,26 +75,19 @@ def files(case: PlaneShear, seed: int) -> Files:
     )
     box = np.array([[0.0, case.length], [0.0, case.depth], [-3.0 * mean, gap + 3.0 * mean]])
     closing = gap * (1.0 - LOOSE_FRACTION / CLOSED_FRACTION)
-    deck = (
-        decks()
-        .get_template("shear.in.j2")
-        .render(
-            case=case,
-            seed=seed,
-            skin=0.2 * mean,
-            middle=0.5 * gap,
-            closing_speed=CLOSING_SPEED,
-            closing_steps=round(closing / CLOSING_SPEED / case.time_step),
-            force_per_grain=case.normal_stress * area / len(upper),
-            bin=0.5 * mean,
-            stages=[_stage(case, stage) for stage in case.stages],
-            **contact_values(case.contact, case.contact.friction),
-        )
-    )
-    return {"grains.data": data_file(gas, walls, grains.density, box), "deck.in": deck}
+    return data_file(gas, walls, grains.density, box), {
+        "case": case,
+        "seed": seed,
+        "skin": 0.2 * mean,
+        "middle": 0.5 * gap,
+        "closing_speed": CLOSING_SPEED,
+        "closing_steps": round(closing / CLOSING_SPEED / case.time_step),
+        "force_per_grain": case.normal_stress * area / len(upper),
+        "bin": 0.5 * mean,
+    }
 
 
-def rough_wall(case: PlaneShear, random: np.random.Generator) -> Packing:
+def rough_wall(case: ShearCell, random: np.random.Generator) -> Packing:
     """Equal grains about z = 0 in rows so close that no mobile grain fits between them, rough by random heights."""
     mean = case.grains.mean_diameter
     rows, columns = (int(side / (0.85 * mean)) for side in (case.length, case.depth))
@@ -91,14 +98,12 @@ def rough_wall(case: PlaneShear, random: np.random.Generator) -> Packing:
 
 def templates(code: str) -> Files:
     """The texts of the templates that a run is made from."""
-    return template_texts("contact_law.in.j2", "shear.in.j2")
+    return template_texts("contact_law.in.j2", "shear_cell.in.j2", "shear.in.j2")
 
 
-def rate(case: PlaneShear, stage: ShearStage) -> float:
-    """Nominal engineering shear rate [1/s] of a stage: I sqrt(sigma_zz/rho_p)/d."""
-    return (
-        stage.nominal_inertial_number * math.sqrt(case.normal_stress / case.grains.density) / case.grains.mean_diameter
-    )
+def rate(case: ShearCell, inertial_number: float) -> float:
+    """Nominal engineering shear rate [1/s]: I sqrt(sigma_zz/rho_p)/d."""
+    return inertial_number * math.sqrt(case.normal_stress / case.grains.density) / case.grains.mean_diameter
 
 
 def reduce(case: PlaneShear, folder: Path) -> Reduced:
@@ -108,7 +113,7 @@ def reduce(case: PlaneShear, folder: Path) -> Reduced:
     writer.writeheader()
     grains = steps = 0
     for index, _ in enumerate(case.stages):
-        blocks = _read_profiles(folder / f"profile_{index}.txt")
+        blocks = read_profiles(folder / f"profile_{index}.txt")
         heights = np.loadtxt(folder / f"height_{index}.txt", comments="#", ndmin=2)
         writer.writerow(_steady(case, [table for _, table in blocks], heights[:, 1]))
         steps = blocks[-1][0]
@@ -118,12 +123,13 @@ def reduce(case: PlaneShear, folder: Path) -> Reduced:
 
 
 def _stage(case: PlaneShear, stage: ShearStage) -> dict[str, Any]:
-    strain_per_step = rate(case, stage) * case.time_step
+    rate_ = rate(case, stage.nominal_inertial_number)
+    strain_per_step = rate_ * case.time_step
     every = max(1, round(stage.average_strain / strain_per_step / BLOCKS / SAMPLES_PER_BLOCK))
     block = every * SAMPLES_PER_BLOCK
     return {
         "nominal_inertial_number": stage.nominal_inertial_number,
-        "speed": rate(case, stage) * case.height,
+        "speed": rate_ * case.height,
         "transient_steps": round(stage.transient_strain / strain_per_step),
         "every": every,
         "repeat": SAMPLES_PER_BLOCK,
@@ -132,7 +138,7 @@ def _stage(case: PlaneShear, stage: ShearStage) -> dict[str, Any]:
     }
 
 
-def _read_profiles(path: Path) -> list[tuple[int, Array]]:
+def read_profiles(path: Path) -> list[tuple[int, Array]]:
     """The blocks of a `fix ave/spatial` file: (step, rows of bin, z, count, values)."""
     lines = [line.split() for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     blocks, at = [], 0
@@ -145,7 +151,7 @@ def _read_profiles(path: Path) -> list[tuple[int, Array]]:
 
 def _steady(case: PlaneShear, blocks: list[Array], tops: Array) -> dict[str, float]:
     """Averages over the bulk of a stage's blocks, with standard errors from the scatter between blocks."""
-    rows = np.array([_bulk(case, block, top) for block, top in zip(blocks, tops, strict=False)])
+    rows = np.array([bulk(case, block, top) for block, top in zip(blocks, tops, strict=False)])
     mean = rows.mean(axis=0)
     rate_, phi, xx, yy, zz, xz, kinetic = mean
     mu_blocks = rows[:, 5] / rows[:, 4]
@@ -173,7 +179,7 @@ def _steady(case: PlaneShear, blocks: list[Array], tops: Array) -> dict[str, flo
     return dict(zip(COLUMNS, (float(f"{value:.6g}") for value in values), strict=True))
 
 
-def _bulk(case: PlaneShear, block: Array, top: float) -> tuple[float, ...]:
+def bulk(case: ShearCell, block: Array, top: float) -> tuple[float, ...]:
     """Rate, solid fraction, stresses xx, yy, zz, xz (compression and drag positive), kinetic share of zz in a block."""
     height = top - 0.75 * case.grains.mean_diameter
     inside = (block[:, 1] > BULK[0] * height) & (block[:, 1] < BULK[1] * height)

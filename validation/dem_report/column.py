@@ -91,12 +91,12 @@ def observed_column(content: dict[str, Any], column: Column, label: str) -> Obse
     Raises InputError for a scene that cannot be run and SimulationError if it breaks down.
     """
     simulation = Simulation(Scene.from_dict(content, label))
-    snapshots = [mirrored(snapshot_of_bodies(0.0, simulation.bodies))]
+    snapshots = [mirrored(snapshot_of_bodies(0.0, simulation.bodies, column.grain_density))]
     # The first interval compiles the kernels; its cost is taken to be that of the others.
     started, first_steps = 0.0, 0
     for target in column.times[1:]:
         advance(simulation, target)
-        snapshots.append(mirrored(snapshot_of_bodies(simulation.time, simulation.bodies)))
+        snapshots.append(mirrored(snapshot_of_bodies(simulation.time, simulation.bodies, column.grain_density)))
         if first_steps == 0:
             started, first_steps = time.process_time(), simulation.steps
     cost = (time.process_time() - started) * simulation.steps / (simulation.steps - first_steps)

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from validation.dem_report.fitted_laws import friction_of_mean_pressure
+from validation.dem_report.fitting_data import friction_of_mean_pressure
 from validation.dem_report.judgement import Judgement
 from validation.dem_report.reference_set import Ensemble, Rows
 from validation.grains.distance import surface_at
@@ -23,6 +23,7 @@ SERIES = (
     ("kinetic_energy", "kinetic energy [J/m]"),
     ("interior_solid_fraction", r"interior $\phi$"),
 )
+STRESSES = (("stress_zz", r"$\sigma_{zz}$ [Pa]"), ("stress_xx", r"$\sigma_{xx}$ [Pa]"))
 
 
 def profile_figure(ensemble: Ensemble, judgements: Sequence[Judgement]) -> str:
@@ -89,6 +90,38 @@ def distance_figure(judgements: Sequence[Judgement], band: float) -> str:
     _style(axes)
     _legend(figure, axes)
     return data_uri(figure)
+
+
+def stress_figure(ensemble: Ensemble, judgements: Sequence[Judgement]) -> str:
+    """Vertical and horizontal stress over the height along the axis: at the release, halfway, at rest."""
+    told = [run for run in ensemble.runs if "stress_zz" in run.snapshots]
+    columns = min(len(run.snapshot_times) for run in told)
+    figure = Figure(figsize=(WIDTH, 4.6), layout="constrained")
+    all_axes = figure.subplots(2, columns, sharey=True, squeeze=False)
+    for row, (name, label) in zip(all_axes, STRESSES, strict=True):
+        for number, axes in enumerate(row):
+            for count, run in enumerate(told):
+                profile = along_axis(run, name, number)
+                axes.plot(profile, run.z, color=MEAN, lw=1.0, alpha=0.6, label="grains" if count == 0 else None)
+            for color, judged, observation in _observed(judgements):
+                if name in observation.snapshots and number < len(observation.snapshot_times):
+                    profile = along_axis(observation, name, number)
+                    axes.plot(profile, observation.z, color=color, lw=1.0, label=judged.name)
+            axes.set_xlabel(label, fontsize=9)
+            _style(axes)
+    for axes, name in zip(all_axes[0], ("at the release", "halfway", "at rest"), strict=False):
+        axes.set_title(name, fontsize=9)
+    for axes in all_axes[:, 0]:
+        axes.set_ylabel("z [m]", fontsize=9)
+        axes.set_ylim(0.0, 1.2 * max(float(run.of("height")[0]) for run in told))
+    _legend(figure, all_axes[0, 0])
+    return data_uri(figure)
+
+
+def along_axis(observation: Observation, name: str, number: int) -> np.ndarray:
+    """A field of one snapshot, the mean over a third of the half width on both sides of the axis; shape (z,)."""
+    half_width = observation.of("runout")[0]
+    return np.asarray(observation.snapshots[name][number][np.abs(observation.x) < half_width / 3.0].mean(axis=0))
 
 
 def shear_figure(shear: Rows, curves: dict[str, tuple[Sequence[float], Sequence[float]]]) -> str:

@@ -9,13 +9,14 @@ from mpm_core.output import atomic
 from validation.dem_report.judgement import Judgement
 from validation.dem_report.reference_set import Ensemble
 from validation.dem_report.sections import Section, column_figures
-from validation.dem_report.tables import comparison_table
+from validation.dem_report.stored import SECTIONS, sections_as_json
+from validation.dem_report.tables import comparison_table, profile_table
 from validation.dem_report.write import rendered
 from validation.grains.distance import compare
 from validation.grains.reference_file import load_reference
 from validation.grains.run_observation import observe_run
 
-PAGE = "comparison.html"
+PAGE, TITLE = "comparison.html", "Runs against grains"
 
 
 def judged_runs(folders: Sequence[Path], references: Sequence[Path]) -> tuple[Ensemble, list[Judgement]]:
@@ -25,18 +26,23 @@ def judged_runs(folders: Sequence[Path], references: Sequence[Path]) -> tuple[En
     """
     observed = [load_reference(path) for path in references]
     width = float(np.mean([reference.description["kernel_width"] for reference in observed]))
+    densities = {float(found) for reference in observed if (found := reference.description.get("grain_density"))}
+    density = densities.pop() if len(densities) == 1 else None
     ensemble = Ensemble(" and ".join(reference.label for reference in observed), tuple(observed))
     judgements = []
     for folder in folders:
-        run = observe_run(folder, width)
+        run = observe_run(folder, width, density)
         judgements.append(Judgement(folder.name, ensemble, run, compare(run, observed)))
     return ensemble, judgements
 
 
-def write_page(folder: Path, ensemble: Ensemble, judgements: Sequence[Judgement]) -> Path:
-    """Write a self-contained page with the table and the figures; returns its path."""
+def write_page(folder: Path, ensemble: Ensemble, judgements: Sequence[Judgement], command: str) -> Path:
+    """Write a self-contained page with the table and the figures that `command` makes; returns its path."""
     table = comparison_table(ensemble, judgements)
-    section = Section(table.title, tables=(table,), figures=column_figures(ensemble, judgements))
-    text = rendered("dem.html", "Runs against grains", (), (section,), "grainlaw compare --dem")
+    section = Section(
+        table.title, tables=(table, profile_table(judgements)), figures=column_figures(ensemble, judgements)
+    )
+    text = rendered("dem.html", TITLE, (), (section,), command)
     atomic.write_text(folder / PAGE, text)
+    atomic.write_text(folder / SECTIONS, sections_as_json(TITLE, command, (section,)))
     return folder / PAGE

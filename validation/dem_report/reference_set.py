@@ -13,7 +13,7 @@ from validation.grains.distance import Comparison, compare
 from validation.grains.observation import Observation, read_observation
 
 REFERENCE = Path(__file__).resolve().parents[1] / "reference"
-COLLAPSES, SHEAR, COMPRESSION = "collapse", "shear.csv", "compression.csv"
+COLLAPSES, SHEAR, SHEAR_START, COMPRESSION = "collapse", "shear.csv", "shear_start.csv", "compression.csv"
 Rows = list[dict[str, float]]
 
 
@@ -58,10 +58,11 @@ class Ensemble:
 
 @dataclass(frozen=True)
 class ReferenceSet:
-    """Ensembles by case, and the rows of the shear and compression tests."""
+    """Ensembles by case, and the rows of the shear tests, steady and from the start, and of compression."""
 
     ensembles: dict[str, Ensemble]
     shear: Rows
+    shear_start: Rows
     compression: Rows
 
     def ensemble(self, case: str) -> Ensemble:
@@ -86,7 +87,7 @@ def read_reference_set(folder: Path = REFERENCE) -> ReferenceSet:
         observation = read_observation(path)
         by_case.setdefault(str(observation.description.get("case", "")), []).append(observation)
     ensembles = {case: Ensemble(case, tuple(runs)) for case, runs in by_case.items()}
-    return ReferenceSet(ensembles, _rows(folder / SHEAR), _rows(folder / COMPRESSION))
+    return ReferenceSet(ensembles, *(_rows(folder / name) for name in (SHEAR, SHEAR_START, COMPRESSION)))
 
 
 def _rows(path: Path) -> Rows:
@@ -124,7 +125,7 @@ class Scatter:
 
 
 def scatter(reference: ReferenceSet) -> list[Scatter]:
-    """Seed against seed and code against code on each column, and flat against glued floor."""
+    """Seed against seed and code against code on each column, flat against glued floor, variants against the column."""
     found = []
     for ensemble in reference.ensembles.values():
         pairs = list(combinations(ensemble.runs, 2))
@@ -134,6 +135,10 @@ def scatter(reference: ReferenceSet) -> list[Scatter]:
             _scatter("seed against seed", ensemble.case, same),
             _scatter("code against code", ensemble.case, across),
         ]
+        base = reference.ensembles.get(ensemble.case.rpartition("-")[0])
+        if base is not None:
+            packings = [(one, other) for one in ensemble.runs for other in base.runs if _code(one) == _code(other)]
+            found.append(_scatter("against the plain column", ensemble.case, packings))
         flat = reference.ensembles.get(ensemble.case.replace("glued", "flat"))
         if flat is not None and flat is not ensemble:
             floors = [(one, other) for one in flat.runs for other in ensemble.runs if _code(one) == _code(other)]

@@ -1,17 +1,20 @@
 """The whole comparison: scatter of the grains, laws on every column, controls, limits."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from materials import InputError, SimulationError, get_material
-from validation.case import Effort
+from validation.case import Effort, Evidence
+from validation.cases import aluminium_bars
 from validation.dem_report.column import column_of
-from validation.dem_report.fitted_laws import FittedLaw, JudgedLaw, fitted, write_data
+from validation.dem_report.fitted_laws import FittedLaw, JudgedLaw, fitted
+from validation.dem_report.fitting_data import write_data
 from validation.dem_report.judged_laws import JUDGED_LAWS
 from validation.dem_report.judgement import Announce, Bench, Judgement
 from validation.dem_report.reference_set import Ensemble, ReferenceSet, Scatter, scatter
-from validation.dem_report.variants import CONTROLS, LIMITS
+from validation.dem_report.variants import CONTROLS, LIMITS, Variant
 from validation.grains.distance import Verdict
 
 FLOOR = "glued"
@@ -28,8 +31,9 @@ class Report:
     laws        fitted to shear and compression
     unfitted    what kept a law from being fitted, by its title
     judgements  one for each law and column
-    controls    must differ
-    limits      the first law with one thing changed
+    controls    deliberate mistakes, which must be noticed
+    limits      laws with one thing changed
+    experiment  aluminium bars, against their published deposit; None in a quick report
     """
 
     effort: Effort
@@ -41,11 +45,12 @@ class Report:
     judgements: list[Judgement]
     controls: list[Judgement]
     limits: list[Judgement]
+    experiment: Evidence | None
 
     @property
-    def controls_differ(self) -> bool:
-        """Whether every deliberate mistake was noticed; one that could not be run was not."""
-        return all(found.comparison is not None and found.verdict is Verdict.DIFFERS for found in self.controls)
+    def missed(self) -> list[Judgement]:
+        """The deliberate mistakes that were not noticed; one that could not be run was not."""
+        return [found for found in self.controls if not _noticed(found)]
 
     def of_column(self, ensemble: Ensemble) -> list[Judgement]:
         """The judgements on one column."""
@@ -78,9 +83,33 @@ def make_report(reference: ReferenceSet, folder: Path, effort: Effort, announce:
         laws=laws,
         unfitted=unfitted,
         judgements=[bench.judge(law, ensemble) for ensemble in judged_columns for law in laws],
-        controls=[bench.judge_variant(laws[0], reference, middle, variant) for variant in CONTROLS],
-        limits=[] if is_quick else [bench.judge_variant(laws[0], reference, middle, variant) for variant in LIMITS],
+        controls=_varied(bench, reference, laws, judged_columns, CONTROLS),
+        limits=[] if is_quick else _varied(bench, reference, laws, columns, LIMITS),
+        experiment=None if is_quick else aluminium_bars.measure(Effort.FULL),
     )
+
+
+def _noticed(control: Judgement) -> bool:
+    order = list(Verdict)
+    wanted = control.variant.noticed if control.variant else Verdict.DIFFERS
+    return control.comparison is not None and order.index(control.verdict) >= order.index(wanted)
+
+
+def _varied(
+    bench: Bench,
+    reference: ReferenceSet,
+    laws: list[FittedLaw],
+    columns: list[Ensemble],
+    variants: Sequence[Variant],
+) -> list[Judgement]:
+    """The variants of the laws that were fitted, on the columns that are there."""
+    by_name = {found.judged.law: found for found in laws}
+    by_ratio = {round(found.aspect_ratio, 2): found for found in columns}
+    return [
+        bench.judge_variant(by_name[variant.law], reference, by_ratio[variant.aspect_ratio], variant)
+        for variant in variants
+        if variant.law in by_name and variant.aspect_ratio in by_ratio
+    ]
 
 
 def _fitted(judged: tuple[JudgedLaw, ...], folder: Path, announce: Announce) -> tuple[list[FittedLaw], dict[str, str]]:

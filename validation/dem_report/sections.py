@@ -3,20 +3,32 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from validation.dem_report.figures import distance_figure, profile_figure, series_figure, shear_figure
+from validation.case import Evidence
+from validation.cases import aluminium_bars
+from validation.dem_report.figures import (
+    distance_figure,
+    profile_figure,
+    series_figure,
+    shear_figure,
+    stress_figure,
+)
 from validation.dem_report.judgement import Judgement
 from validation.dem_report.reference_set import Ensemble, Rows
 from validation.dem_report.report import Report
 from validation.dem_report.tables import (
     Table,
     cost_table,
+    coverage_table,
     parameter_table,
+    percent,
+    profile_table,
     scatter_table,
     summary_table,
     variant_table,
     verdict_table,
 )
 from validation.grains.distance import PROFILE_BAND
+from validation.report.plots import figure_image
 
 MODELLED = (
     "Both sides are observed by the same functions. Solid fraction: each grain, or material point, is spread by a "
@@ -47,12 +59,13 @@ class ReportFigure:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the page."""
+    """A part of the page; `command` makes its figures, where it is not the page's own."""
 
     title: str
     paragraphs: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
     figures: tuple[ReportFigure, ...] = ()
+    command: str = ""
 
 
 def sections(report: Report, shear: Rows) -> list[Section]:
@@ -60,7 +73,7 @@ def sections(report: Report, shear: Rows) -> list[Section]:
     scatter = scatter_table(report.scatter)
     controls = variant_table(
         "Negative controls",
-        "The first law with one deliberate mistake; each has to come out as differs.",
+        "One mistake each: mu(I)-LC must come out as differs, mu(I), phi(I) as no longer indistinguishable.",
         report.controls,
     )
     parts = [
@@ -71,23 +84,26 @@ def sections(report: Report, shear: Rows) -> list[Section]:
         Section(controls.title, (_controls_said(report),), (controls,)),
     ]
     if report.limits:
-        note = (
-            "The first law with one thing changed, nothing refitted: what moves towards the grains is what limits it."
-        )
+        note = "Laws with one thing changed, nothing refitted: what moves towards the grains is what limits them."
         parts.append(
-            Section("What limits the law", tables=(variant_table("What limits the law", note, report.limits),))
+            Section("What limits the laws", tables=(variant_table("What limits the laws", note, report.limits),))
         )
+    if report.experiment is not None:
+        parts.append(_experiment(report.experiment))
     cost = cost_table(report)
-    return [*parts, Section(cost.title, tables=(cost,)), Section("What was modelled", (MODELLED, CONTINUUM, LEFT_OUT))]
+    runs = coverage_table()
+    parts += [
+        Section(cost.title, tables=(cost,)),
+        Section(runs.title, tables=(runs,)),
+        Section("What was modelled", (MODELLED, CONTINUUM, LEFT_OUT)),
+    ]
+    return parts
 
 
 def _controls_said(report: Report) -> str:
-    if report.controls_differ:
-        return "All of them differ."
-    missed = ", ".join(
-        found.name for found in report.controls if found.comparison is None or found.verdict != "differs"
-    )
-    return f"NOT all of them differ: {missed}."
+    if not report.missed:
+        return "All of them are noticed."
+    return f"NOT all of them are noticed: {', '.join(found.name for found in report.missed)}."
 
 
 def _fits(report: Report, shear: Rows) -> Section:
@@ -99,10 +115,35 @@ def _fits(report: Report, shear: Rows) -> Section:
     return Section(table.title, (*remarks, *commands), (table,), (ReportFigure(image, caption),))
 
 
+def _experiment(found: Evidence) -> Section:
+    """The solver against an experiment that it has nothing in common with."""
+    case = aluminium_bars.CASE
+    rows = tuple(
+        (
+            one.name,
+            one.unit,
+            f"{one.measured:.4g}",
+            "" if one.reference is None else f"{one.reference:.4g}",
+            percent(one.error),
+            percent(one.band),
+            "yes" if one.within_band else "no",
+        )
+        for one in found.measurements
+    )
+    columns = ("quantity", "unit", "computed", "measured", "error", "band", "within")
+    title = "A published experiment: aluminium bars"
+    figures = tuple(
+        ReportFigure(figure_image(figure), f"{figure.title}: {case.reference}.") for figure in found.figures
+    )
+    paragraphs = (f"The solver, {case.proves}. {case.reference}.", *(f"{note}." for note in found.notes))
+    table = Table(title, case.norm, columns, rows)
+    return Section(title, paragraphs, (table,), figures, f"grainlaw validate {case.name} --out DIR")
+
+
 def _column(report: Report, ensemble: Ensemble) -> Section:
     judgements = report.of_column(ensemble)
     table = verdict_table(ensemble, judgements)
-    return Section(table.title, tables=(table,), figures=column_figures(ensemble, judgements))
+    return Section(table.title, tables=(table, profile_table(judgements)), figures=column_figures(ensemble, judgements))
 
 
 def column_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple[ReportFigure, ...]:
@@ -111,8 +152,17 @@ def column_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple
     return (
         ReportFigure(profile_figure(ensemble, judgements), f"Surfaces over time, {name}."),
         ReportFigure(series_figure(ensemble, judgements), f"Runout, height, energy, solid fraction, {name}."),
+        *_stress_figures(ensemble, judgements),
         ReportFigure(
             distance_figure(judgements, PROFILE_BAND),
             f"E_A over time, {name}; green: indistinguishable, yellow: acceptable; shaded: nearest to farthest.",
         ),
     )
+
+
+def _stress_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple[ReportFigure, ...]:
+    """Stress along the axis, where runs of the grains tell their contacts."""
+    if not any("stress_zz" in run.snapshots for run in ensemble.runs):
+        return ()
+    caption = f"Stress along the axis, {ensemble.case}; forces between the grains, no fluctuations."
+    return (ReportFigure(stress_figure(ensemble, judgements), caption),)

@@ -3,10 +3,16 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
+import numpy as np
+
+from validation.dem.catalogue import CASES
+from validation.dem.coverage import missing_runs, present_runs, seeds_told
+from validation.dem.runs import runs_of
 from validation.dem_report.fitted_laws import FittedLaw
 from validation.dem_report.judgement import Judgement
-from validation.dem_report.reference_set import Ensemble, Scatter
+from validation.dem_report.reference_set import REFERENCE, Ensemble, Scatter
 from validation.dem_report.report import Report
 from validation.grains.distance import MEASURES, PROFILE_BAND, Distance, Verdict
 
@@ -71,6 +77,28 @@ def _verdict_row(judged: Judgement) -> tuple[str, ...]:
     )
 
 
+def profile_table(judgements: Sequence[Judgement]) -> Table:
+    """E_A at each output time, one column for each law."""
+    known = [(found.name, found.comparison) for found in judgements if found.comparison is not None]
+    rows = [
+        (f"{time:.2f}", *(percent(float(np.interp(time, found.times, found.profiles))) for _, found in known))
+        for time in (known[0][1].times if known else ())
+    ]
+    note = "Mean over the runs of grains; the laws' t50 and the rest stand in the table above."
+    return Table("E_A at each output time", note, ("t [s]", *(name for name, _ in known)), tuple(rows))
+
+
+def coverage_table(reference: Path = REFERENCE) -> Table:
+    """What the reference set is made of, and what it lacks."""
+    present = present_runs(reference)
+    rows = []
+    for case in CASES:
+        there = seeds_told([run for run in runs_of(case) if run.name in present])
+        rows.append((case.name, case.purpose, there, seeds_told(missing_runs(case, reference)) or "nothing"))
+    note = "Codes with the seeds of their packings; grainlaw dem run CASE makes what is missing."
+    return Table("Runs of grains", note, ("case", "what it is", "there", "missing"), tuple(rows))
+
+
 def summary_table(report: Report) -> Table:
     """One row for each law, one column for each aspect ratio."""
     rows = []
@@ -128,7 +156,7 @@ def cost_table(report: Report) -> Table:
     for ensemble in report.columns:
         for code in sorted({str(run.description.get("code", "")) for run in ensemble.runs}):
             runs = [run.description for run in ensemble.runs if run.description.get("code") == code]
-            seconds = sum(run.get("wall_time") or math.nan for run in runs) / len(runs)
+            seconds = sum(run.get("cpu_time") or run.get("wall_time") or math.nan for run in runs) / len(runs)
             work = sum((run.get("grains") or math.nan) * (run.get("steps") or math.nan) for run in runs) / len(runs)
             rows.append((f"a = {ensemble.aspect_ratio:g}", code, *_cost(seconds, work), "", ""))
         for judged in report.of_column(ensemble):
@@ -138,8 +166,8 @@ def cost_table(report: Report) -> Table:
                 cells = _cost(float(cost["cpu_time"]), float(cost["points"]) * float(cost["steps"]))
                 rows.append((f"a = {ensemble.aspect_ratio:g}", judged.name, *cells, percent(area), judged.verdict))
     note = (
-        "Seconds on one core: wall time of the grains' runs, which have the whole width and depth; "
-        "CPU time of the laws, which run half of the column in plane strain."
+        "Seconds of one core. Grains: CPU time where a run told it, else wall time on a machine that also did other "
+        "work; the whole width and a depth of four grains, without the settling. Laws: CPU time, half of the column."
     )
     columns = ("column", "what", "s", "million grain- or point-steps", "million/s", "E_A", "verdict")
     return Table("Cost", note, columns, tuple(rows))

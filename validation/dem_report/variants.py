@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from validation.grains.distance import Verdict
+
 
 @dataclass(frozen=True)
 class Variant:
@@ -14,6 +16,9 @@ class Variant:
     changes     values of the scene by dotted key
     cell_factor by which the cell size is multiplied
     floor       of the grains that it is judged against
+    law         whose column it is
+    aspect_ratio of the column
+    noticed     of a mistake: the verdict from which on it counts as noticed
     """
 
     name: str
@@ -22,21 +27,40 @@ class Variant:
     changes: Mapping[str, Any] = field(default_factory=dict)
     cell_factor: float = 1.0
     floor: str = "glued"
+    law: str = "mu_i_lc"
+    aspect_ratio: float = 2.0
+    noticed: Verdict = Verdict.DIFFERS
 
 
 FRICTIONS = ("static_friction", "dynamic_friction")
+NO_SLIP = {"boundary.bottom": "no_slip"}
 
+
+def _of_delayed_dilatancy(name: str, says: str, aspect_ratio: float, **changes: Any) -> Variant:
+    return Variant(f"mu(I), phi(I), {name}", says, law="mu_i_phi_i", aspect_ratio=aspect_ratio, **changes)
+
+
+# A law that is near enough must lose its verdict by a mistake; gravity 12 makes it 10 % early and leaves the pile as it
+# is, which no band of t50 that is twice 5 % wide can call more than that.
 CONTROLS = (
     Variant("friction 30 % too low", "a wrong material", dict.fromkeys(FRICTIONS, 0.7)),
     Variant("gravity 12 m/s2", "a wrong clock", changes={"gravity": [0.0, -12.0]}),
     Variant("flat floor", "the right law against grains on a floor on which they roll", floor="flat"),
+    *(
+        _of_delayed_dilatancy(name, says, 2.0, noticed=Verdict.ACCEPTABLE, **mistake)
+        for name, says, mistake in (
+            ("friction 30 % too low", "a wrong material", {"factors": dict.fromkeys(FRICTIONS, 0.7)}),
+            ("gravity 12 m/s2", "a wrong clock", {"changes": {"gravity": [0.0, -12.0]}}),
+            ("flat floor", "a wrong floor", {"floor": "flat"}),
+        )
+    ),
 )
 
 LIMITS = (
-    Variant("as judged", "the law itself, for comparison"),
+    Variant("mu(I)-LC, as judged", "the law itself, for comparison"),
     Variant("half the cell", "resolution: what is left to gain from a finer grid", cell_factor=0.5),
     Variant("twice the cell", "resolution: a coarser grid", cell_factor=2.0),
-    Variant("no slip at the floor", "floor: rougher than a friction of 0.7", changes={"boundary.bottom": "no_slip"}),
+    Variant("no slip at the floor", "floor: rougher than a friction of 0.7", changes=NO_SLIP),
     Variant(
         "floor friction 0.35",
         "floor: smoother",
@@ -53,6 +77,15 @@ LIMITS = (
         dict.fromkeys(FRICTIONS, 1.1),
     ),
     Variant("softer, K/4", "stiffness: the bulk modulus of the law", {"bulk_modulus": 0.25}),
+    _of_delayed_dilatancy("a = 2, as judged", "the law itself, for comparison", 2.0),
+    _of_delayed_dilatancy(
+        "a = 2, no dilatancy", "constant phi: what dilatancy is worth", 2.0, factors={"dilatancy_coefficient": 0.0}
+    ),
+    _of_delayed_dilatancy("a = 2, half the cell", "resolution", 2.0, cell_factor=0.5),
+    _of_delayed_dilatancy("a = 6, as judged", "the law itself, for comparison", 6.0),
+    _of_delayed_dilatancy("a = 6, twice the cell", "resolution", 6.0, cell_factor=2.0),
+    _of_delayed_dilatancy("a = 6, half the cell", "resolution", 6.0, cell_factor=0.5),
+    _of_delayed_dilatancy("a = 6, no slip at the floor", "floor", 6.0, changes=NO_SLIP),
 )
 
 

@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -15,19 +16,22 @@ from validation.dem_report.judgement import Judgement
 from validation.dem_report.reference_set import Rows, Scatter
 from validation.dem_report.report import Report
 from validation.dem_report.sections import Section, sections
+from validation.dem_report.stored import SECTIONS, sections_as_json
 from validation.dem_report.tables import SYMBOLS
 from validation.grains.distance import Verdict
 
 PAGE, MARKDOWN, RESULT = "dem.html", "dem.md", "dem.json"
+TITLE = "Laws against grains"
 
 
 def write_report(folder: Path, report: Report, shear: Rows, command: str) -> list[Path]:
-    """Write page, Markdown and JSON into a folder; returns their paths."""
+    """Write page, Markdown, JSON and what `grainlaw report` needs into a folder; returns their paths."""
     parts = sections(report, shear)
     texts = {
-        PAGE: rendered("dem.html", "Laws against grains", _introduction(report), parts, command),
-        MARKDOWN: rendered("dem.md", "Laws against grains", _introduction(report), parts, command),
+        PAGE: rendered("dem.html", TITLE, _introduction(report), parts, command),
+        MARKDOWN: rendered("dem.md", TITLE, _introduction(report), parts, command),
         RESULT: json.dumps(_content(report, command), indent=2, allow_nan=False) + "\n",
+        SECTIONS: sections_as_json(TITLE, command, parts),
     }
     for name, text in texts.items():
         atomic.write_text(folder / name, text)
@@ -64,13 +68,14 @@ def _content(report: Report, command: str) -> dict[str, Any]:
         "command": command,
         "effort": str(report.effort),
         "cell_size": report.cell_size,
-        "controls_differ": report.controls_differ,
+        "controls_noticed": not report.missed,
         "scatter": [_scatter(found) for found in report.scatter],
         "laws": [_law(found) for found in report.laws],
         "unfitted": report.unfitted,
         "judgements": [_judgement(found) for found in report.judgements],
         "controls": [_judgement(found) for found in report.controls],
         "limits": [_judgement(found) for found in report.limits],
+        "experiment": None if report.experiment is None else [asdict(one) for one in report.experiment.measurements],
     }
 
 

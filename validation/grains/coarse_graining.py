@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from validation.grains.snapshot import Array, GrainSnapshot
+from validation.grains.snapshot import Array, GrainSnapshot, StressMoments
 
 SPACING = 0.0075
 # Beyond it lies less than 1e-4 of a Gaussian.
@@ -79,3 +79,10 @@ def grain_kernel(snapshot: GrainSnapshot, lattice: Lattice, width: float, depth:
 def solid_fraction(snapshot: GrainSnapshot, kernel: Kernel) -> Array:
     """phi(x, z) [1]."""
     return kernel.field(snapshot.solid_volumes)
+
+
+def stress(moments: StressMoments, lattice: Lattice, width: float, depth: float) -> tuple[Array, Array, Array]:
+    """The components xx, zz, xz of the stress [Pa], compression-positive, each of shape (len(x), len(z))."""
+    kernel = Kernel(lattice, width, moments.positions, depth)
+    xx, zz, xz = (kernel.field(component) for component in moments.values.T)
+    return xx, zz, xz

@@ -9,26 +9,29 @@ import numpy as np
 
 from materials import InputError
 from mpm_core.body import Body
-from mpm_core.columns import VX, VY, X, Y
+from mpm_core.columns import DENSITY, SXX, SXY, SYY, VX, VY, X, Y
 from mpm_core.initial import build_bodies
 from mpm_core.output.run_folder import RunFolder
 from mpm_core.scene import Scene
-from validation.grains.snapshot import Array, GrainSnapshot
+from validation.grains.snapshot import Array, GrainSnapshot, StressMoments
 
 DEPTH = 1.0
 
 
-def snapshot_of_bodies(time: float, bodies: Sequence[Body]) -> GrainSnapshot:
-    """The points of all bodies at a time [s]. Raises InputError for a law without a grain density."""
+def snapshot_of_bodies(time: float, bodies: Sequence[Body], density: float) -> GrainSnapshot:
+    """The points of all bodies at a time [s]; `density` of the grains [kg/m3]."""
     plane = np.concatenate([body.points[[X, Y]] for body in bodies], axis=1)
     velocity = np.concatenate([body.points[[VX, VY]] for body in bodies], axis=1)
-    return GrainSnapshot(time, _in_space(plane), _in_space(velocity), _solid_volumes(bodies))
+    volumes = np.concatenate([body.point_mass / body.points[DENSITY] for body in bodies])
+    stress = np.concatenate([body.points[[SXX, SYY, SXY]] for body in bodies], axis=1)
+    moments = StressMoments(_in_space(plane), -(stress * volumes).T)
+    return GrainSnapshot(time, _in_space(plane), _in_space(velocity), _solid_volumes(bodies, density), moments)
 
 
-def snapshots_of_run(run: RunFolder, scene: Scene) -> Iterator[GrainSnapshot]:
-    """The frames of a run's folder. Raises InputError if they hold no velocity."""
+def snapshots_of_run(run: RunFolder, scene: Scene, density: float) -> Iterator[GrainSnapshot]:
+    """The frames of a run's folder; `density` of the grains [kg/m3]. Raises InputError if they hold no velocity."""
     # Frames list the points in the order of generation, as freshly built bodies do.
-    volumes = _solid_volumes(build_bodies(scene))
+    volumes = _solid_volumes(build_bodies(scene), density)
     for number in range(len(run.frame_files)):
         frame = run.load_frame(number)
         if len(frame.positions) != len(volumes):
@@ -48,20 +51,31 @@ def mirrored(snapshot: GrainSnapshot, plane: float = 0.0) -> GrainSnapshot:
         np.concatenate([offset + snapshot.positions * reflection, snapshot.positions]),
         np.concatenate([snapshot.velocities * reflection, snapshot.velocities]),
         np.concatenate([snapshot.solid_volumes, snapshot.solid_volumes]),
+        None if snapshot.stress is None else _mirrored_stress(snapshot.stress, offset, reflection),
     )
 
 
-def grain_density(bodies: Sequence[Body]) -> float:
-    """The one grain density of all bodies [kg/m3]. Raises InputError if there is none, or several."""
-    found = {getattr(body.parameters, "grain_density", None) for body in bodies}
+def _mirrored_stress(stress: StressMoments, offset: Array, reflection: Array) -> StressMoments:
+    """Both halves; the shear stress changes its sign."""
+    return StressMoments(
+        np.concatenate([offset + stress.positions * reflection, stress.positions]),
+        np.concatenate([stress.values * [1.0, 1.0, -1.0], stress.values]),
+    )
+
+
+def grain_density(bodies: Sequence[Body], otherwise: float | None = None) -> float:
+    """The one grain density of all bodies [kg/m3], or another value for laws that declare none.
+
+    Raises InputError if there is none, or several.
+    """
+    found = {getattr(body.parameters, "grain_density", otherwise) for body in bodies}
     if len(found) > 1 or None in found:
         laws = ", ".join(body.law.name for body in bodies)
         raise InputError(f"laws {laws}: grains and points compare by solid fraction, which needs one grain_density")
     return float(found.pop() or 0.0)
 
 
-def _solid_volumes(bodies: Sequence[Body]) -> Array:
-    density = grain_density(bodies)
+def _solid_volumes(bodies: Sequence[Body], density: float) -> Array:
     return np.concatenate([np.full(body.count, body.point_mass / density) for body in bodies])
 
 

@@ -2,7 +2,7 @@
 
 In HDF5: the attributes `description` (JSON: provenance) and `grainlaw_observation` (version of this format, 1);
 `x`, `z` [m]; `time` [s]; `surface` (time, x) [m]; `series/NAME` (time); `snapshots/time` [s] and `snapshots/NAME`
-(time, x, z) with solid_fraction, velocity_x, velocity_z.
+(time, x, z) with solid_fraction, velocity_x, velocity_z and, where contacts were told, stress_xx, stress_zz, stress_xz.
 """
 
 import json
@@ -33,7 +33,14 @@ SERIES_UNITS = {
 }
 # By the number of axes: series in full; surfaces to 1e-7, fields to 5e-4 of their value, finer than one grain tells.
 STORED_TYPES = {1: np.float64, 2: np.float32, 3: np.float16}
-SNAPSHOT_UNITS = {"solid_fraction": "1", "velocity_x": "m/s", "velocity_z": "m/s"}
+SNAPSHOT_UNITS = {
+    "solid_fraction": "1",
+    "velocity_x": "m/s",
+    "velocity_z": "m/s",
+    "stress_xx": "Pa",
+    "stress_zz": "Pa",
+    "stress_xz": "Pa",
+}
 
 
 @dataclass(frozen=True)
@@ -92,7 +99,8 @@ def write_observation(path: Path, observation: Observation) -> None:
 
 
 def _write(file: h5py.File, name: str, values: Array, unit: str) -> None:
-    stored = values.astype(STORED_TYPES[values.ndim])
+    kind = STORED_TYPES[values.ndim]
+    stored = values.astype(kind if np.abs(values).max(initial=0.0) <= np.finfo(kind).max else np.float32)
     dataset = file.create_dataset(name, data=stored, compression="gzip", compression_opts=9, shuffle=True)
     dataset.attrs["unit"] = unit
 

@@ -8,7 +8,14 @@ from typing import Any
 import numpy as np
 
 from materials import InputError
-from validation.grains.coarse_graining import Kernel, Lattice, column_lattice, grain_kernel, solid_fraction
+from validation.grains.coarse_graining import (
+    Kernel,
+    Lattice,
+    column_lattice,
+    grain_kernel,
+    solid_fraction,
+    stress,
+)
 from validation.grains.observation import Observation
 from validation.grains.readers.run_folder import read_snapshots
 from validation.grains.run_description import RunDescription, read_run_description
@@ -93,6 +100,9 @@ def observe(snapshots: Iterable[GrainSnapshot], setting: Setting, description: d
     series |= _integrals(snapshots, setting)
     chosen = _chosen(series["runout"])
     fields = [_fields(snapshots[number], kernels[number], fractions[number]) for number in chosen]
+    if all(snapshots[number].stress is not None for number in chosen):
+        for number, field in zip(chosen, fields, strict=True):
+            field.update(_stresses(snapshots[number], lattice, setting))
     times = np.array([snapshot.time for snapshot in snapshots])
     return Observation(
         description={**description, "bulk_solid_fraction": bulk, "kernel_width": setting.width},
@@ -140,3 +150,10 @@ def _fields(snapshot: GrainSnapshot, kernel: Kernel, phi: Array) -> dict[str, Ar
         for component in (snapshot.velocities[:, 0], snapshot.velocities[:, 2])
     ]
     return {"solid_fraction": phi, "velocity_x": velocities[0], "velocity_z": velocities[1]}
+
+
+def _stresses(snapshot: GrainSnapshot, lattice: Lattice, setting: Setting) -> dict[str, Array]:
+    """Components of the stress [Pa], compression-positive."""
+    assert snapshot.stress is not None
+    found = stress(snapshot.stress, lattice, setting.width, setting.depth)
+    return dict(zip(("stress_xx", "stress_zz", "stress_xz"), found, strict=True))

@@ -41,6 +41,7 @@ class RunDescription(BaseModel):
     code: str = ""
     seed: int | None = None
     wall_time: float | None = None
+    cpu_time: float | None = None
     steps: int | None = None
     frames: tuple[FrameEntry, ...] | None = None
     grains_files: str = ""

@@ -13,9 +13,10 @@ from validation.grains.observation import Observation
 from validation.grains.observe import Setting, observe
 
 
-def observe_run(folder: Path, width: float) -> Observation:
+def observe_run(folder: Path, width: float, density: float | None = None) -> Observation:
     """The observation of a run with a kernel of the grains' width [m].
 
+    `density` is that of the grains [kg/m3], for a law that declares none.
     A column that stands against a free-slip side is taken for the half of one that is symmetric about it.
     Raises InputError if the folder holds no run, or frames without velocity.
     """
@@ -24,7 +25,8 @@ def observe_run(folder: Path, width: float) -> Observation:
     bodies = build_bodies(scene)
     lowest = min(float(body.points[X].min()) for body in bodies)
     highest = max(float(body.points[X].max()) for body in bodies)
-    snapshots = snapshots_of_run(run, scene)
+    found = grain_density(bodies, density)
+    snapshots = snapshots_of_run(run, scene, found)
     center = 0.5 * (lowest + highest)
     left = scene.grid.lower[0]
     if scene.boundary.left.kind == "free_slip" and lowest - left < scene.grid.cell_size:
@@ -35,7 +37,7 @@ def observe_run(folder: Path, width: float) -> Observation:
         depth=DEPTH,
         floor=scene.grid.lower[1],
         center=center,
-        grain_density=grain_density(bodies),
+        grain_density=found,
         gravity=-scene.gravity[1],
     )
     return observe(snapshots, setting, _description(folder, scene, bodies))

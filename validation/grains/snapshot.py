@@ -9,6 +9,18 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
+class StressMoments:
+    """Stress times volume at places, compression-positive: pieces of contacts, or material points.
+
+    positions   shape (m, 3) [m]
+    values      of the components xx, zz, xz, shape (m, 3) [Pa m3]
+    """
+
+    positions: Array
+    values: Array
+
+
+@dataclass(frozen=True)
 class GrainSnapshot:
     """Grains at one time; x along the slope, y along the depth, z up.
 
@@ -16,12 +28,14 @@ class GrainSnapshot:
     positions       of the centres, shape (n, 3) [m]
     velocities      of the centres, shape (n, 3) [m/s]
     solid_volumes   volume of solid in each grain, shape (n,) [m3]; of a material point its mass over the grain density
+    stress          None where contacts were not told
     """
 
     time: float
     positions: Array
     velocities: Array
     solid_volumes: Array
+    stress: StressMoments | None = None
 
     @property
     def count(self) -> int:

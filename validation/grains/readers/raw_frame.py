@@ -19,12 +19,16 @@ LARGEST_DIAMETER = 1.0
 
 @dataclass(frozen=True)
 class RawFrame:
-    """Columns of one time, each of shape (n,), with the names of `ALIASES` settled; time [s] and step where told."""
+    """Columns of one time, each of shape (n,), with the names of `ALIASES` settled.
+
+    time [s], step and the file of the contacts where told
+    """
 
     path: Path
     columns: dict[str, Array]
     time: float | None = None
     step: int | None = None
+    contacts: Path | None = None
 
 
 class Reader(Protocol):

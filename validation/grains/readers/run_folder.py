@@ -5,7 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from materials import InputError
+from validation.grains.love_weber import stress_of_contacts
 from validation.grains.readers import hdf5_grains, liggghts, text_table, vtk_points
+from validation.grains.readers.contacts import read_contacts
 from validation.grains.readers.raw_frame import RawFrame, Reader, snapshot_of
 from validation.grains.run_description import RUN_DESCRIPTION_NAME, RunDescription
 from validation.grains.snapshot import GrainSnapshot
@@ -53,6 +55,10 @@ def snapshots_of(frames: Sequence[RawFrame], description: RunDescription) -> Ite
                 f"{frame.path}: {snapshot.count} grains at t = {time:g} s, {first.count} in the first frame; "
                 "is it truncated, or did grains leave the box?"
             )
+        if frame.contacts is not None:
+            contacts = read_contacts(frame.contacts)
+            stress = stress_of_contacts(*contacts, description.depth, description.floor_level)
+            snapshot = replace(snapshot, stress=stress)
         yield snapshot
 
 
@@ -64,7 +70,9 @@ def _listed_frames(folder: Path, description: RunDescription) -> list[RawFrame]:
         found = raw_frames(folder / entry.file)
         if entry.time is not None and len(found) > 1:
             raise InputError(f"{folder / entry.file} holds {len(found)} frames, but run.json gives it one time")
-        frames += [replace(frame, time=frame.time if entry.time is None else entry.time) for frame in found]
+        contacts = folder / entry.contacts if entry.contacts else None
+        for frame in found:
+            frames.append(replace(frame, time=frame.time if entry.time is None else entry.time, contacts=contacts))
     if not frames:
         raise InputError(f"{folder / RUN_DESCRIPTION_NAME}: frames is an empty list")
     return frames

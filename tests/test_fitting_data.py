@@ -1,0 +1,98 @@
+"""What the laws are fitted to: data files from the reference set, the start of shear as an element test."""
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from grainlaw.cli import app
+from materials import get_material
+from plugins import mu_i_phi_i
+from validation.calibration.data import read_data
+from validation.calibration.fit import calibrate
+from validation.calibration.model import ForwardModel, answer
+from validation.dem.batch import case_named
+from validation.dem.coverage import missing_runs, present_runs, seeds_told
+from validation.dem.runs import Run, runs_of
+from validation.dem_report.fitting_data import FLOW_FILE, START_FILE, START_STRAINS, write_data
+from validation.dem_report.judged_laws import JUDGED_LAWS
+from validation.dem_report.reference_set import REFERENCE, read_reference_set
+from validation.dem_report.variants import CONTROLS, LIMITS
+
+LAW = "mu_i_phi_i"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    found = tmp_path_factory.mktemp("data")
+    write_data(read_reference_set(), found, 2450.0, 0.015)
+    return found
+
+
+def test_every_judged_law_finds_its_data(folder):
+    for judged in JUDGED_LAWS:
+        law = get_material(judged.law)
+        assert all(read_data(folder / name, law) for name in judged.data)
+        assert set(judged.given) <= set(law.parameter_declarations)
+
+
+def test_no_granular_law_is_left_unjudged():
+    assert {judged.law for judged in JUDGED_LAWS} >= {
+        "mu_i_lc",
+        "mu_i_phi_i",
+        "mu_i_elastoplastic",
+        "drucker_prager",
+        "modified_cam_clay",
+        "mu_i_mcc",
+    }
+
+
+def test_variants_change_what_their_law_has():
+    for variant in (*CONTROLS, *LIMITS):
+        assert set(variant.factors) <= set(get_material(variant.law).parameter_declarations)
+
+
+def test_the_start_of_shear_determines_the_dilatancy(folder, tmp_path):
+    """The law's own answer with a = 3 and a little noise, fitted from another start."""
+    (data,) = read_data(folder / START_FILE, get_material(LAW))
+    values = mu_i_phi_i.DEM_SHEAR._replace(dilatancy_coefficient=3.0)._asdict()
+    model = ForwardModel(get_material(LAW), (data,))
+    result = model.history(data, values, START_STRAINS)
+    noise = 0.002 * np.random.default_rng(1).standard_normal((2, len(START_STRAINS)))
+    columns = [answer(result, measured) * (1.0 + own) for measured, own in zip(data.measured, noise, strict=True)]
+    lines = (folder / START_FILE).read_text().splitlines()
+    head = [line for line in lines if line.startswith("#")]
+    names = "engineering_shear_strain [1],friction_of_mean_pressure [1],solid_fraction [1]"
+    rows = [f"{strain:.6g},{mu:.6g},{phi:.6g}" for strain, mu, phi in zip(START_STRAINS, *columns, strict=True)]
+    path = tmp_path / "start.csv"
+    path.write_text("\n".join([*head, names, *rows]) + "\n")
+    fit = calibrate(
+        LAW, [path], ["dilatancy_coefficient"], {k: v for k, v in values.items() if k != "dilatancy_coefficient"}
+    )
+    assert fit.values["dilatancy_coefficient"] == pytest.approx(3.0, rel=0.02)
+
+
+def test_a_dense_packing_is_stronger_at_first_and_dilates(folder):
+    data = read_data(folder / START_FILE, get_material(LAW))[0]
+    friction, fraction = (measured.values for measured in data.measured)
+    steady = read_data(folder / FLOW_FILE, get_material(LAW))[0]
+    assert friction[0] > 1.3 * steady.measured[0].values[0]
+    assert np.all(np.diff(fraction) < 0.0)
+
+
+def test_grains_part_where_no_inertial_number_takes_up_the_shear():
+    """Looser than phi_min: the search used to run to I = 1e306."""
+    parameters = mu_i_phi_i.DEM_SHEAR
+    fraction = parameters.loosest_solid_fraction - 8e-4
+    increment = mu_i_phi_i.Increment(1e-5, fraction, 5000.0, 120.0, 8e-5)
+    flow = mu_i_phi_i.flow_of_step(increment, 1.0, parameters)
+    assert flow.pressure == 0.0
+    assert flow.number < 1e9
+
+
+def test_missing_runs_are_told():
+    case = case_named("shear")
+    assert missing_runs(case, REFERENCE) == []
+    assert seeds_told(runs_of(case)) == "liggghts 1 2 3"
+    assert Run(case, "liggghts", 1).name in present_runs(REFERENCE)
+    answer = CliRunner().invoke(app, ["dem", "list"])
+    assert "not in the reference set" in answer.output.replace("\n", " ") or "reference" in answer.output
