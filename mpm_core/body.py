@@ -47,6 +47,7 @@ class Body:
         self.stress_reports = np.zeros((blocks, STRESS_REPORTS))
         self._points_to_grid: Callable[..., Any]
         self._grid_to_points: Callable[..., Any]
+        self._spreading_grid_to_points: Callable[..., Any]
         self._stress_pass: Callable[..., Any]
 
     @property
@@ -62,7 +63,8 @@ class Body:
     def choose_kernels(self, basis: Basis, keeps_shear_strain: bool) -> None:
         """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""
         self._points_to_grid = make_points_to_grid(basis)
-        self._grid_to_points = make_grid_to_points(basis, spreads=not self.law.carries_tension)
+        self._grid_to_points = make_grid_to_points(basis, spreads=False)
+        self._spreading_grid_to_points = make_grid_to_points(basis, spreads=not self.law.carries_tension)
         self._stress_pass = make_stress_pass(
             pointwise_law(self.law), keeps_shear_strain, ties_volumes=not self.law.carries_tension
         )
@@ -116,9 +118,10 @@ class Body:
                 grid.cell_size,
             )
 
-    def from_grid(self, grid: Grid, dt: float, memory: float) -> None:
-        """Gather velocity and its gradient, move the points."""
-        self._grid_to_points(
+    def from_grid(self, grid: Grid, dt: float, memory: float, spreads: bool) -> None:
+        """Gather velocity and its gradient, move the points; loose grains also down the gradient of crowding."""
+        transfer = self._spreading_grid_to_points if spreads else self._grid_to_points
+        transfer(
             self.rows,
             self.point_mass,
             grid.nodes,

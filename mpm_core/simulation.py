@@ -31,6 +31,7 @@ from mpm_core.time_step import (
     strain_rates,
     what_sets_the_step,
 )
+from mpm_core.volumes import STEPS_PER_SPREADING
 
 # A volumetric strain increment beyond which no explicit step can be right.
 LARGEST_INCREMENT = 0.5
@@ -151,7 +152,7 @@ class Simulation:
             self.ledger.wall_friction += taken.friction
         hold_nodes(grid, self.held_nodes)
         for body in self.bodies:
-            body.from_grid(grid, dt, self._memory(dt))
+            body.from_grid(grid, dt, self._memory(dt), spreads=self.steps % STEPS_PER_SPREADING == 0)
         for body in self.bodies:
             body.update_stress(dt, dt / self.scene.transfer.time_constant)
         self.time += dt
