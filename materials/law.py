@@ -46,14 +46,14 @@ class Law:
     update          (stress, strain_rate, density, state, parameters, dt) -> (stress, state); one step of dt [s] at the
                     strain rate D [1/s], ending at `density`; the caller has already rotated the stress
     sound_speed     (stress, density, state, parameters) -> fastest wave speed [m/s]
-    stored_energy   (stress, density, state, parameters) -> elastic energy per mass [J/kg], zero without stress; with it
-                    the ledger of a run tells elastic from dissipated work; None if the law does not know it (version 2)
-    at_bound        (stress, density, state, parameters) -> whether the law holds the point at a bound of its own, such
-                    as a smallest yield surface; a run counts such points and says so; None if it never does (version 2)
     parameter_sets  named parameter sets, the first of which element tests take by default
     contradiction   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
     carries_tension whether the material may be pulled; a law of loose grains leaves it at False
     hook_version    version of this interface that the law was written for; a law that does not say was for version 1
+    stored_energy   (stress, density, state, parameters) -> elastic energy per mass [J/kg], zero without stress; with it
+                    the ledger of a run tells elastic from dissipated work; None if the law does not know it (version 2)
+    at_bound        (stress, density, state, parameters) -> whether the law holds the point at a bound of its own, such
+                    as a smallest yield surface; a run counts such points and says so; None if it never does (version 2)
 
     The functions take and return scalars and NamedTuples, call only `math` and functions marked with
     `pointwise`, and have no side effects.
@@ -66,12 +66,12 @@ class Law:
     initial_state: Callable[[SymmetricTensor, float, Any], Any]
     update: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any]]
     sound_speed: Callable[[SymmetricTensor, float, Any, Any], float]
-    stored_energy: Callable[[SymmetricTensor, float, Any, Any], float] | None = None
-    at_bound: Callable[[SymmetricTensor, float, Any, Any], bool] | None = None
     parameter_sets: Mapping[str, ParameterSet] = field(default_factory=dict)
     contradiction: Callable[[Any], str] = _no_contradiction
     carries_tension: bool = False
     hook_version: int = 1
+    stored_energy: Callable[[SymmetricTensor, float, Any, Any], float] | None = None
+    at_bound: Callable[[SymmetricTensor, float, Any, Any], bool] | None = None
 
     def checked(self, values: dict[str, Any], where: str) -> Any:
         """Parameters of this law from values by name; `where` names their place in messages. Raises InputError."""
