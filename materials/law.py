@@ -46,13 +46,6 @@ class Law:
     update          (stress, strain_rate, density, state, parameters, dt) -> (stress, state); one step of dt [s] at the
                     strain rate D [1/s], ending at `density`; the caller has already rotated the stress
     sound_speed     (stress, density, state, parameters) -> fastest wave speed [m/s]
-    small_step      like `update`, but -> (stress, state, succeeded): a shorter way without loops, for steps as small as
-                    the core takes, that the compiler can take for many points at once; where it says that it has not
-                    succeeded, `update` is called. None for a law whose `update` is that short itself (version 2)
-    stored_energy   (stress, density, state, parameters) -> elastic energy per mass [J/kg], zero without stress; with it
-                    the ledger of a run tells elastic from dissipated work; None if the law does not know it (version 2)
-    at_bound        (stress, density, state, parameters) -> whether the law holds the point at a bound of its own, such
-                    as a smallest yield surface; a run counts such points and says so; None if it never does (version 2)
     parameter_sets  named parameter sets, the first of which element tests take by default
     contradiction   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
     carries_tension whether the material may be pulled; a law of loose grains leaves it at False
@@ -61,6 +54,13 @@ class Law:
                     by a law whose stress follows the rate of strain itself. Its `sound_speed` is that of waves at a
                     constant rate; its viscosity bounds an explicit step besides, to about rho h^2/(2 viscosity) on
                     cells of h. Since hook version 2
+    stored_energy   (stress, density, state, parameters) -> elastic energy per mass [J/kg], zero without stress; with it
+                    the ledger of a run tells elastic from dissipated work; None if the law does not know it (version 2)
+    at_bound        (stress, density, state, parameters) -> whether the law holds the point at a bound of its own, such
+                    as a smallest yield surface; a run counts such points and says so; None if it never does (version 2)
+    small_step      like `update`, but -> (stress, state, succeeded): a shorter way without loops, for steps as small as
+                    the core takes, that the compiler can take for many points at once; where it says that it has not
+                    succeeded, `update` is called. None for a law whose `update` is that short itself (version 2)
 
     The functions take and return scalars and NamedTuples, call only `math` and functions marked with
     `pointwise`, and have no side effects.
