@@ -254,7 +254,8 @@ def make_grid_to_points(basis: Basis, spreads: bool) -> Callable[..., Any]:
     ):
         points = len(rows[X])
         for block in prange(reports.shape[0]):
-            stencils, room, energies = room_for_stencils(), np.empty((6, GROUP * LANES)), np.empty(GROUP)
+            stencils, room = room_for_stencils(), np.empty((7, GROUP * LANES))
+            energies = room[6]
             gathered = Gathered(room[0], room[1], room[2], room[3], room[4], room[5])
             sums = no_sums()
             for start in range(block * BLOCK, min(points, (block + 1) * BLOCK), GROUP):

@@ -140,7 +140,7 @@ def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: s
 
 
 def make_largest_signal_speed(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
-    """The largest sound speed of some points plus the largest speed among them [m/s]; NaN if anything is not finite.
+    """The largest sum of sound speed and speed of some points [m/s], as ordered bits; NaN if anything is not finite.
 
     On the way it stores the stiffness rho c^2 of each point [Pa].
     """
@@ -153,14 +153,14 @@ def make_largest_signal_speed(law: PointwiseLaw, mark: str) -> Callable[..., Any
         vx, vy, stiffness = rows[VX], rows[VY], rows[STIFFNESS]
         sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
         law_parameters = parameter_class(*parameters)
-        fastest_wave, fastest_squared = np.int64(0), np.int64(0)
+        fastest = np.int64(0)
         for p in range(first, last):
             stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
             sound = sound_speed(stress, density[p], load(rows, p), law_parameters)
             stiffness[p] = density[p] * sound * sound
             not_finite = 0.0 * (sxx[p] + syy[p] + szz[p] + sxy[p])
-            fastest_wave = max(fastest_wave, ordered_bits(sound + not_finite))
-            fastest_squared = max(fastest_squared, ordered_bits(vx[p] * vx[p] + vy[p] * vy[p]))
-        return np.int64(fastest_wave).view(np.float64) + np.sqrt(np.int64(fastest_squared).view(np.float64))
+            speed = np.sqrt(vx[p] * vx[p] + vy[p] * vy[p])
+            fastest = max(fastest, ordered_bits(speed + sound + not_finite))
+        return fastest
 
     return largest_signal_speed

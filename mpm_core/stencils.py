@@ -42,8 +42,10 @@ def make_find_stencils(basis: Basis) -> tuple[Callable[..., Any], Callable[..., 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{CORE_MARK}")
     def room_for_stencils():  # type: ignore[no-untyped-def]
-        room = np.empty((5, GROUP))
-        return Stencils(room[0], np.empty(nodes * GROUP), room[1], room[2], room[3], room[4])
+        room = np.empty((5 + nodes) * GROUP)
+        starts, x, y = room[:GROUP], room[GROUP : 2 * GROUP], room[2 * GROUP : 3 * GROUP]
+        moment_x, moment_y = room[3 * GROUP : 4 * GROUP], room[4 * GROUP : 5 * GROUP]
+        return Stencils(starts, room[5 * GROUP :], x, y, moment_x, moment_y)
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{CORE_MARK}")

@@ -131,7 +131,7 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, ties_volumes: 
 
     `ties_volumes` says whether the material is loose grains, whose points take on the strain of `volumes`.
 
-    Reports per block of points: the largest signal speed c + |v| of a group [m/s], the work of the stress on the strain
+    Reports per block of points: the largest signal speed c + |v| [m/s], the work of the stress on the strain
     [J/m], and the largest volumetric strain increment of the step. Where anything is not finite, the last one is NaN.
     """
     mark = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}{ties_volumes:d}"
@@ -142,7 +142,8 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, ties_volumes: 
     def stress_pass(rows, point_mass, parameters, dt, exchange, reports):  # type: ignore[no-untyped-def]
         count = len(rows[X])
         for block in prange(reports.shape[0]):
-            ties, room = np.zeros(GROUP), (np.empty(GROUP), np.empty(GROUP))
+            arrays = np.zeros((3, GROUP))
+            ties, room = arrays[0], (arrays[1], arrays[2])
             fastest, largest, work = np.int64(0), np.int64(0), 0.0
             for start in range(block * BLOCK, min(count, (block + 1) * BLOCK), GROUP):
                 first, last = np.uint64(start), np.uint64(min(count, start + GROUP))
@@ -152,7 +153,7 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, ties_volumes: 
                 apply_law(rows, first, last, ties, parameters, dt)
                 speed = largest_signal_speed(rows, first, last, parameters)
                 work += work_done(rows, first, last, room)
-                fastest, largest = max(fastest, ordered_bits(speed)), max(largest, increment)
+                fastest, largest = max(fastest, speed), max(largest, increment)
             reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
             reports[block, INTERNAL_WORK] = point_mass * dt * work
             reports[block, MAX_INCREMENT] = np.int64(largest).view(np.float64)
