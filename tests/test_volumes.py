@@ -7,7 +7,15 @@ from scenes_for_tests import BLOCK, MU_I_LC, set_affine_velocity, simulation
 from mpm_core.basis import BASES, make_stencil
 from mpm_core.columns import CROWDING, DENSITY, LXY, MEAN_DENSITY, MEAN_PRESSURE, SXX, SXY, SZZ, VX, X, Y
 from mpm_core.grid import COMPONENTS, GHOSTS, NODE_CROWDING, Grid
-from mpm_core.volumes import NEARLY_FULL, closing_strain, crowding_of, evening_share, evening_strain, spreading_rate
+from mpm_core.volumes import (
+    NEARLY_FULL,
+    STEPS_PER_SPREADING,
+    closing_strain,
+    crowding_of,
+    evening_share,
+    evening_strain,
+    spreading_rate,
+)
 
 LOOSE = {
     "material": {"mu_i_lc": MU_I_LC},
@@ -112,6 +120,7 @@ def test_crowded_grains_move_apart(material, apart):
     left = (np.abs(body.points[Y] - 0.4) < 0.03) & (np.abs(body.points[X] - 0.4) < 0.03)
     before = body.points[X, left].copy()
     dt = 1e-4
+    case.steps = STEPS_PER_SPREADING
     case.step(dt)
     moved = (body.points[X, left] - before) / dt - body.points[VX, left]
     assert (moved < -1e-3).all() if apart else np.abs(moved).max() < 1e-6
