@@ -35,8 +35,8 @@ EVENING = 2.0
 # The share of crowding that a unit of shear strain squeezes out, and the rate of spreading over that of shear.
 SQUEEZE = 0.4
 SPREAD = 12.0
-# Points spread in one step of so many, and so many times as fast: the moments of the crowding cost a tenth of a step, and
-# crowding changes over hundreds of steps.
+# Points spread in one step of so many, and so many times as fast: the moments of the crowding cost a tenth of a step,
+# and crowding changes over hundreds of steps.
 STEPS_PER_SPREADING = 4
 
 # The filling above which a node is taken to lie inside the material.
