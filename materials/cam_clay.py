@@ -130,6 +130,12 @@ def cam_clay_step(
 
 
 @pointwise
+def total_slope(constants: CamClay) -> float:
+    """1/kappa + 1/(lambda - kappa), the change of ln(p_c/p) with plastic volume strain."""
+    return 1.0 / constants.swelling_index + 1.0 / (constants.compression_index - constants.swelling_index)
+
+
+@pointwise
 def elastic_trial(
     start_pressure: float,
     start_deviator: SymmetricTensor,
@@ -151,8 +157,7 @@ def elastic_trial(
 def return_to_yield_surface(trial: Trial, constants: CamClay, expected: float) -> YieldState:
     """The state with F = 0 at the end of the step; NaN if the iteration does not converge."""
     bracket = first_bracket(trial.wetness)
-    total_slope = 1.0 / constants.swelling_index + 1.0 / (constants.compression_index - constants.swelling_index)
-    theta = 1.0 - expected * total_slope / trial.wetness if trial.wetness != 0.0 else 1.0
+    theta = 1.0 - expected * total_slope(constants) / trial.wetness if trial.wetness != 0.0 else 1.0
     if 0.0 < theta < bracket.above:
         bracket = Bracket(theta, bracket.below, bracket.above)
     for _ in range(MAXIMUM_ITERATIONS):
@@ -202,8 +207,7 @@ def yield_state(theta: float, trial: Trial, constants: CamClay) -> YieldState:
     """
     m_squared = constants.critical_state_ratio * constants.critical_state_ratio
     kappa = constants.swelling_index
-    total_slope = 1.0 / kappa + 1.0 / (constants.compression_index - kappa)
-    elastic_share = 1.0 / (kappa * total_slope)
+    elastic_share = 1.0 / (kappa * total_slope(constants))
     stiffness = shear_modulus(1.0 / kappa, constants.poisson_ratio)
 
     z = trial.wetness * theta
@@ -217,7 +221,7 @@ def yield_state(theta: float, trial: Trial, constants: CamClay) -> YieldState:
     at_start, sheared = scaled(trial.start_ratio, shrunk), scaled(trial.shear, 2.0 * mean_modulus)
     s = added(at_start, sheared)
     trial_squared = 1.5 / m_squared * contraction(s, s)
-    slope = 3.0 / (total_slope * m_squared) * mean_modulus / mean_over_path(z, dry_ratio)
+    slope = 3.0 / (total_slope(constants) * m_squared) * mean_modulus / mean_over_path(z, dry_ratio)
     n = slope * (1.0 - theta) / theta
 
     dz = -z * theta

@@ -13,7 +13,7 @@ bracketed return has to be called.
 
 from typing import NamedTuple
 
-from materials.cam_clay import TOLERANCE, CamClay
+from materials.cam_clay import TOLERANCE, CamClay, total_slope
 from materials.pointwise import pointwise
 from materials.rheology import shear_modulus
 from materials.tensor import SymmetricTensor, added, contraction, scaled
@@ -106,12 +106,6 @@ def cam_clay_small_step(
     is_root = error <= 0.0 and exponent <= LARGEST_EXPONENT and last.relaxation >= 0.0
     succeeded = abs(growth) <= LARGEST_EXPONENT and (is_root or not yields)
     return SmallStep(p, ratio * p, s, succeeded)
-
-
-@pointwise
-def total_slope(constants: CamClay) -> float:
-    """1/kappa + 1/(lambda - kappa), the change of ln(p_c/p) with plastic volume strain."""
-    return 1.0 / constants.swelling_index + 1.0 / (constants.compression_index - constants.swelling_index)
 
 
 @pointwise
