@@ -75,10 +75,13 @@ def flowing_wave_speed(
 
     more than the elastic K + 4/3 G where A > B, without dilatancy by (K A)^2/(4 G) at most.
     """
-    x = max(-0.5 * (bulk_modulus / shear_modulus) * (friction + dilatancy), LEAST_NORMAL_SHARE)
+    compliance = 1.0 / shear_modulus
+    x = max(-0.5 * (bulk_modulus * compliance) * (friction + dilatancy), LEAST_NORMAL_SHARE)
     along = (shear_modulus * x + bulk_modulus * friction) * (shear_modulus * x + bulk_modulus * dilatancy)
+    # Most laws state a dilatancy of zero, which spares their points a division.
+    hardening = compliance if dilatancy == 0.0 else 1.0 / (shear_modulus + friction * bulk_modulus * dilatancy)
     elastic = bulk_modulus + 4.0 / 3.0 * shear_modulus
-    return math.sqrt((elastic - min(0.0, along / (shear_modulus + friction * bulk_modulus * dilatancy))) / density)
+    return math.sqrt((elastic - min(0.0, along * hardening)) / density)
 
 
 @pointwise

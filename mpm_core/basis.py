@@ -17,7 +17,7 @@ from typing import Any
 from numba.extending import register_jitable
 
 from materials.compilation import named
-from mpm_core.quads import greater, lesser, truncated, where_equal
+from mpm_core.quads import greater, lesser, some_equal, truncated, where_equal
 from mpm_core.sources import CORE_MARK
 
 # Towards a wall the moment goes to zero with the mass of the row inside, and stiffness over mass grows without bound.
@@ -78,7 +78,7 @@ def quadratic_weights(f: float) -> tuple[float, float, float]:
 @register_jitable
 def quadratic_moment(f: float) -> float:
     """1/4 everywhere."""
-    return 0.25
+    return 0.25 + 0.0 * f
 
 
 @register_jitable
@@ -108,7 +108,7 @@ def cubic_weights(f: float) -> tuple[float, float, float, float]:
 @register_jitable
 def cubic_moment(f: float) -> float:
     """1/3 everywhere."""
-    return 1.0 / 3.0
+    return 1.0 / 3.0 + 0.0 * f
 
 
 @register_jitable
@@ -143,7 +143,7 @@ BASES = {
 
 
 def make_stencil(basis: Basis) -> Callable[..., Any]:
-    """A function (grid coordinate, lower ghost, upper ghost) -> (first node, f, weights, moment), for kernels.
+    """A function (grid coordinate, lower ghost, upper ghost) -> (first node, f, weights, moment, 1/moment).
 
     The first node is a whole number, but a float, and a quad if the coordinate is one.
     """
@@ -151,6 +151,8 @@ def make_stencil(basis: Basis) -> Callable[..., Any]:
     moment_of, at_lower_wall, at_upper_wall = basis.moment, basis.lower_wall, basis.upper_wall
     smallest = SMALLEST_MOMENT_AT_WALL if width > 2 else SMALLEST_MOMENT_OF_HATS
     select = _make_select(width)
+    # Away from walls the moment of wide splines is the same everywhere, and no point needs a division.
+    inverse_inside = 1.0 / basis.moment(1.0) if width > 2 else 0.0
 
     @register_jitable
     @named(f"{basis.name}_{CORE_MARK}")
@@ -159,11 +161,14 @@ def make_stencil(basis: Basis) -> Callable[..., Any]:
         last_first = float(upper_ghost - width + 1)
         first = lesser(truncated(coordinate - offset), last_first)
         f = coordinate - first
-        w = weights(f)
-        lower = float(lower_ghost)
-        tied = where_equal(first, lower, w[0], where_equal(first, last_first, w[width - 1], 0.0))
-        at_wall = select(first, last_first, at_upper_wall(w), w)
-        return first, f, select(first, lower, at_lower_wall(w), at_wall), greater(moment_of(f) - 2.0 * tied, smallest)
+        w, moment, lower = weights(f), greater(moment_of(f), smallest), float(lower_ghost)
+        inverse = inverse_inside + 0.0 * f if width > 2 else 1.0 / moment
+        if some_equal(first, lower) or some_equal(first, last_first):
+            tied = where_equal(first, lower, w[0], where_equal(first, last_first, w[width - 1], 0.0))
+            at_wall = select(first, last_first, at_upper_wall(w), w)
+            w, moment = select(first, lower, at_lower_wall(w), at_wall), greater(moment_of(f) - 2.0 * tied, smallest)
+            inverse = 1.0 / moment
+        return first, f, w, moment, inverse
 
     return stencil
 

@@ -47,7 +47,7 @@ class Body:
         self.stress_reports = np.zeros((blocks, STRESS_REPORTS))
         self._points_to_grid: Callable[..., Any]
         self._grid_to_points: Callable[..., Any]
-        self._spreading_grid_to_points: Callable[..., Any]
+        self._tying_grid_to_points: Callable[..., Any]
         self._stress_pass: Callable[..., Any]
 
     @property
@@ -56,20 +56,24 @@ class Body:
         return self.points.shape[1]
 
     @property
+    def is_loose(self) -> bool:
+        """Whether the material is loose grains, whose volumes are tied to one another."""
+        return not self.law.carries_tension
+
+    @property
     def column_names(self) -> tuple[str, ...]:
         """What the rows of `points` hold."""
         return (*NAMES, *self.law.state._fields)
 
-    def choose_kernels(self, basis: Basis, keeps_shear_strain: bool) -> None:
+    def choose_kernels(self, basis: Basis, keeps_shear_strain: bool, spreads: bool) -> None:
         """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""
+        ties = self.is_loose
         self._points_to_grid = make_points_to_grid(basis)
-        self._grid_to_points = make_grid_to_points(basis, spreads=False)
-        self._spreading_grid_to_points = make_grid_to_points(basis, spreads=not self.law.carries_tension)
-        self._stress_pass = make_stress_pass(
-            pointwise_law(self.law), keeps_shear_strain, ties_volumes=not self.law.carries_tension
-        )
-        nothing = tuple(allocate(self.points.shape[0], 0))
-        explained(self.law, self._stress_pass, nothing, 1.0, tuple(self.parameters), 0.0, 0.0, self.stress_reports[:0])
+        self._grid_to_points = make_grid_to_points(basis, ties=False, spreads=False)
+        self._tying_grid_to_points = make_grid_to_points(basis, ties, spreads and ties)
+        self._stress_pass = make_stress_pass(pointwise_law(self.law), keeps_shear_strain)
+        nothing, parameters = tuple(allocate(self.points.shape[0], 0)), tuple(self.parameters)
+        explained(self.law, self._stress_pass, nothing, 1.0, parameters, 0.0, 0.0, 0.0, self.stress_reports[:0])
 
     @property
     def velocities(self) -> NDArray[np.float64]:
@@ -118,9 +122,9 @@ class Body:
                 grid.cell_size,
             )
 
-    def from_grid(self, grid: Grid, dt: float, memory: float, spreads: bool) -> None:
-        """Gather velocity and its gradient, move the points; loose grains also down the gradient of crowding."""
-        transfer = self._spreading_grid_to_points if spreads else self._grid_to_points
+    def from_grid(self, grid: Grid, dt: float, memory: float, ties: bool = False) -> None:
+        """Gather velocity and its gradient, and where volumes are to be tied what that needs; move the points."""
+        transfer = self._tying_grid_to_points if ties else self._grid_to_points
         transfer(
             self.rows,
             self.point_mass,
@@ -139,9 +143,14 @@ class Body:
         coordinate = self.points[(X, Y)[axis]]
         coordinate[:] = lower + np.mod(coordinate - lower, period)
 
-    def update_stress(self, dt: float, exchange: float) -> None:
-        """Rotate the stress, bring the density forward, call the law."""
-        self._stress_pass(self.rows, self.point_mass, tuple(self.parameters), dt, exchange, self.stress_reports)
+    def update_stress(self, dt: float, tied: float = 0.0, exchange: float = 0.0) -> None:
+        """Rotate the stress, bring the density forward, call the law.
+
+        `tied` is the time [s] for which the volumes of loose grains are tied in this step, `exchange` that time over
+        the time constant of the transfer.
+        """
+        tied, parameters = tied if self.is_loose else 0.0, tuple(self.parameters)
+        self._stress_pass(self.rows, self.point_mass, parameters, dt, tied, exchange, self.stress_reports)
 
     def state(self, name: str) -> NDArray[np.float64]:
         """A state variable of all points, in their present order. Raises InputError for an unknown name."""

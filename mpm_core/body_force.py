@@ -44,8 +44,8 @@ def _make_scatter(basis: Basis) -> Callable[..., Any]:
     @named(f"{basis.name}_{CORE_MARK}")
     def scatter(x, y, force, nodes, nodes_y, ghosts, origin_x, origin_y, cell_size):  # type: ignore[no-untyped-def]
         for p in range(len(x)):
-            i, _, wx, _ = stencil((x[p] - origin_x) / cell_size, ghosts[0], ghosts[1])
-            j, _, wy, _ = stencil((y[p] - origin_y) / cell_size, ghosts[2], ghosts[3])
+            i, _, wx, _, _ = stencil((x[p] - origin_x) / cell_size, ghosts[0], ghosts[1])
+            j, _, wy, _, _ = stencil((y[p] - origin_y) / cell_size, ghosts[2], ghosts[3])
             for a in range(width):
                 for b in range(width):
                     node = ((int(i) + a) * nodes_y + int(j) + b) * COMPONENTS

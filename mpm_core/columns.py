@@ -11,7 +11,7 @@ NAMES = (
     *("gradient_xx", "gradient_xy", "gradient_yx", "gradient_yy"),
     *("affine_xx", "affine_xy", "affine_yx", "affine_yy"),
     *("stress_xx", "stress_yy", "stress_zz", "stress_xy"),
-    *("density", "stiffness", "mean_density", "mean_pressure", "crowding", "shear_strain"),
+    *("density", "mean_density", "mean_pressure", "crowding", "shear_strain"),
 )
 X, Y = 0, 1
 VX, VY = 2, 3
@@ -20,9 +20,9 @@ AXX, AXY, AYX, AYY = 8, 9, 10, 11
 GRADIENT, AFFINE = slice(4, 8), slice(8, 12)
 SXX, SYY, SZZ, SXY = 12, 13, 14, 15
 DENSITY = 16
-# rho c^2 of the point, and what it gathers of the material around it
-STIFFNESS, MEAN_DENSITY, MEAN_PRESSURE, CROWDING = 17, 18, 19, 20
-SHEAR_STRAIN = 21
+# what a point gathers of the material around it
+MEAN_DENSITY, MEAN_PRESSURE, CROWDING = 17, 18, 19
+SHEAR_STRAIN = 20
 FIRST_STATE = len(NAMES)
 
 DOUBLES_PER_CACHE_LINE = 8

@@ -27,7 +27,7 @@ from materials.compilation import named
 from materials.tensor import SymmetricTensor, shear_strain_rate
 from mpm_core.basis import Basis
 from mpm_core.columns import AXX, AXY, AYX, AYY, CROWDING, LXX, LXY, LYX, LYY, MEAN_DENSITY, MEAN_PRESSURE, VX, VY, X, Y
-from mpm_core.grid import BULK, COMPONENTS
+from mpm_core.grid import BULK, COMPONENTS, NEW_VX
 from mpm_core.quads import (
     LANES,
     filled,
@@ -53,20 +53,14 @@ REPORTS = 8
 
 
 class Gathered(NamedTuple):
-    """What the points of a group receive, four components of each point side by side.
+    """Four components that the points of a group receive, those of each point side by side, and their gradients.
 
-    means               new and old velocity
-    slopes_x, slopes_y  their first moments about the first node of the stencil
-    bulk                mass, crowding, pressure and density of the nodes around
-    crowding_x, crowding_y  first moments of the bulk about the first node of the stencil
+    The components are new and old velocity, or the bulk: mass, crowding, pressure and density of the nodes around.
     """
 
     means: Any
-    slopes_x: Any
-    slopes_y: Any
-    bulk: Any
-    crowding_x: Any
-    crowding_y: Any
+    gradients_x: Any
+    gradients_y: Any
 
 
 class Sums(NamedTuple):
@@ -128,61 +122,59 @@ def updated_affine(affine, gradient, p, new, old, memory):  # type: ignore[no-un
 
 
 @register_jitable(forceinline=True)
-def updated_fields(rows, first, last, cell_size, memory, stencils, gathered, energies):  # type: ignore[no-untyped-def]
-    """Update L, A and the averages around of a group; `energies` receives A:A D of the points."""
+def updated_gradients(rows, first, last, cell_size, memory, stencils, velocities, energies):  # type: ignore[no-untyped-def]
+    """Update L and A of a group; `energies` receives A:A D of the points."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     axx, axy, ayx, ayy = rows[AXX], rows[AXY], rows[AYX], rows[AYY]
-    mean_density, mean_pressure, crowding = rows[MEAN_DENSITY], rows[MEAN_PRESSURE], rows[CROWDING]
-    _, _, places_x, places_y, moments_x, moments_y = stencils
-    means, slopes_x, slopes_y, bulk, _, _ = gathered
-    inverse_size, square = 1.0 / cell_size, cell_size * cell_size
+    square = cell_size * cell_size
     for p in range(first, last, LANES):
         k = p - first
-        x, y = quad_at(places_x, k), quad_at(places_y, k)
-        moment_x, moment_y = quad_at(moments_x, k), quad_at(moments_y, k)
-        new_vx, new_vy, old_vx, old_vy = four_transposed(means, k)
-        new_vx_x, new_vy_x, old_vx_x, old_vy_x = four_transposed(slopes_x, k)
-        new_vx_y, new_vy_y, old_vx_y, old_vy_y = four_transposed(slopes_y, k)
-        scale_x, scale_y = inverse_size / moment_x, inverse_size / moment_y
-        new, old = (new_vx_x - x * new_vx) * scale_x, (old_vx_x - x * old_vx) * scale_x
-        xx = updated_affine(axx, lxx, p, new, old, memory)
-        new, old = (new_vy_x - x * new_vy) * scale_x, (old_vy_x - x * old_vy) * scale_x
-        yx = updated_affine(ayx, lyx, p, new, old, memory)
-        new, old = (new_vx_y - y * new_vx) * scale_y, (old_vx_y - y * old_vx) * scale_y
-        xy = updated_affine(axy, lxy, p, new, old, memory)
-        new, old = (new_vy_y - y * new_vy) * scale_y, (old_vy_y - y * old_vy) * scale_y
-        yy = updated_affine(ayy, lyy, p, new, old, memory)
-        _, crowded, pressure, density = four_transposed(bulk, k)
+        new_xx, new_yx, old_xx, old_yx = four_transposed(velocities.gradients_x, k)
+        new_xy, new_yy, old_xy, old_yy = four_transposed(velocities.gradients_y, k)
+        xx = updated_affine(axx, lxx, p, new_xx, old_xx, memory)
+        yx = updated_affine(ayx, lyx, p, new_yx, old_yx, memory)
+        xy = updated_affine(axy, lxy, p, new_xy, old_xy, memory)
+        yy = updated_affine(ayy, lyy, p, new_yy, old_yy, memory)
+        along_x = (xx * xx + yx * yx) * quad_at(stencils.moment_x, k)
+        along_y = (xy * xy + yy * yy) * quad_at(stencils.moment_y, k)
+        put_quad(energies, k, square * (along_x + along_y))
+
+
+@register_jitable(forceinline=True)
+def updated_surroundings(rows, first, last, bulk):  # type: ignore[no-untyped-def]
+    """Update the averages of the material around a group."""
+    mean_density, mean_pressure, crowding = rows[MEAN_DENSITY], rows[MEAN_PRESSURE], rows[CROWDING]
+    for p in range(first, last, LANES):
+        _, crowded, pressure, density = four_transposed(bulk.means, p - first)
         put_quad(crowding, p, crowded)
         put_quad(mean_pressure, p, pressure)
         put_quad(mean_density, p, density)
-        put_quad(energies, k, square * ((xx * xx + yx * yx) * moment_x + (xy * xy + yy * yy) * moment_y))
 
 
 @register_jitable(forceinline=True)
-def spread(rows, p, k, new_vx, new_vy, cell_size, dt, stencils, gathered):  # type: ignore[no-untyped-def]
-    """The velocities with which points move that also go down the gradient of crowding."""
-    lxx, lxy, lyx, lyy = quad_at(rows[LXX], p), quad_at(rows[LXY], p), quad_at(rows[LYX], p), quad_at(rows[LYY], p)
-    shear_rate = shear_strain_rate(SymmetricTensor(lxx, lyy, 0.0, 0.5 * (lxy + lyx), 0.0, 0.0))
-    speed = cell_size * spreading_rate(shear_rate, dt)
-    crowded = quad_at(rows[CROWDING], p)
-    _, slope_x, _, _ = four_transposed(gathered.crowding_x, k)
-    _, slope_y, _, _ = four_transposed(gathered.crowding_y, k)
-    slope_x = slope_x - quad_at(stencils.x, k) * crowded
-    slope_y = slope_y - quad_at(stencils.y, k) * crowded
-    return new_vx - speed * slope_x, new_vy - speed * slope_y
+def spread(rows, first, last, cell_size, dt, stencils, bulk):  # type: ignore[no-untyped-def]
+    """Move a group down the gradient of crowding, besides the motion of the material."""
+    x, y = rows[X], rows[Y]
+    lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+    for p in range(first, last, LANES):
+        k = p - first
+        shear = 0.5 * (quad_at(lxy, p) + quad_at(lyx, p))
+        shear_rate = shear_strain_rate(SymmetricTensor(quad_at(lxx, p), quad_at(lyy, p), 0.0, shear, 0.0, 0.0))
+        way = dt * cell_size * cell_size * spreading_rate(shear_rate, dt)
+        _, slope_x, _, _ = four_transposed(bulk.gradients_x, k)
+        _, slope_y, _, _ = four_transposed(bulk.gradients_y, k)
+        put_quad(x, p, quad_at(x, p) - way * quad_at(stencils.moment_x, k) * slope_x)
+        put_quad(y, p, quad_at(y, p) - way * quad_at(stencils.moment_y, k) * slope_y)
 
 
 @register_jitable(forceinline=True)
-def moved(rows, first, last, cell_size, dt, memory, spreads, stencils, gathered, energies, sums):  # type: ignore[no-untyped-def]
+def moved(rows, first, last, dt, memory, velocities, energies, sums):  # type: ignore[no-untyped-def]
     """Update velocities and positions of a group; returns the sums with it."""
     x, y, vx, vy = rows[X], rows[Y], rows[VX], rows[VY]
     for p in range(first, last, LANES):
-        new_vx, new_vy, old_vx, old_vy = four_transposed(gathered.means, p - first)
+        new_vx, new_vy, old_vx, old_vy = four_transposed(velocities.means, p - first)
         velocity_x = new_vx + memory * (quad_at(vx, p) - old_vx)
         velocity_y = new_vy + memory * (quad_at(vy, p) - old_vy)
-        if spreads:
-            new_vx, new_vy = spread(rows, p, p - first, new_vx, new_vy, cell_size, dt, stencils, gathered)
         new_x, new_y = quad_at(x, p) + dt * new_vx, quad_at(y, p) + dt * new_vy
         put_quad(vx, p, velocity_x)
         put_quad(vy, p, velocity_y)
@@ -193,77 +185,75 @@ def moved(rows, first, last, cell_size, dt, memory, spreads, stencils, gathered,
     return sums
 
 
-def make_gather(basis: Basis, spreads: bool) -> Callable[..., Any]:
-    """A function that fills what the points of a group receive."""
-    width = basis.width
+def make_gather(basis: Basis, component: int, with_gradients: bool) -> Callable[..., Any]:
+    """A function that fills what a group receives of four components of the nodes, and of their gradients."""
+    width, first_component = basis.width, np.uint64(component)
 
     @register_jitable(forceinline=True)
-    @named(f"{basis.name}_{spreads:d}_{CORE_MARK}")
+    @named(f"{basis.name}_{component}_{with_gradients:d}_{CORE_MARK}")
     def gather(count, nodes, nodes_y, stencils, gathered):  # type: ignore[no-untyped-def]
-        starts, weights = stencils.starts, stencils.weights
-        means, slopes_x, slopes_y, bulk, crowding_x, crowding_y = gathered
+        starts, weights_x, weights_y = stencils.starts, stencils.weights_x, stencils.weights_y
+        slopes_x, slopes_y = stencils.slopes_x, stencils.slopes_y
+        means, gradients_x, gradients_y = gathered
         row_length = np.uint64(nodes_y * COMPONENTS)
         for k in range(count):
-            row = np.uint64(starts[k]) * np.uint64(COMPONENTS)
-            mean, slope_x, slope_y = filled(0.0), filled(0.0), filled(0.0)
-            around, around_x, around_y = filled(0.0), filled(0.0), filled(0.0)
+            row = np.uint64(starts[k]) * np.uint64(COMPONENTS) + first_component
+            mean, gradient_x, gradient_y = filled(0.0), filled(0.0), filled(0.0)
             for a in range(width):
-                in_row, around_in_row = filled(0.0), filled(0.0)
+                in_row, gradient = filled(0.0), filled(0.0)
                 for b in range(width):
-                    node = row + np.uint64(b * COMPONENTS)
-                    weight = weights[np.uint64((a * width + b) * GROUP) + k]
-                    share = weight * quad_at(nodes, node)
-                    in_row = in_row + share
-                    slope_y = scaled_sum(float(b), share, slope_y)
-                    around_share = weight * quad_at(nodes, node + np.uint64(BULK))
-                    around_in_row = around_in_row + around_share
-                    if spreads:
-                        around_y = scaled_sum(float(b), around_share, around_y)
-                mean = mean + in_row
-                slope_x = scaled_sum(float(a), in_row, slope_x)
-                around = around + around_in_row
-                if spreads:
-                    around_x = scaled_sum(float(a), around_in_row, around_x)
+                    at = np.uint64(b * GROUP) + k
+                    values = quad_at(nodes, row + np.uint64(b * COMPONENTS))
+                    in_row = scaled_sum(weights_y[at], values, in_row)
+                    if with_gradients:
+                        gradient = scaled_sum(slopes_y[at], values, gradient)
+                at = np.uint64(a * GROUP) + k
+                mean = scaled_sum(weights_x[at], in_row, mean)
+                if with_gradients:
+                    gradient_x = scaled_sum(slopes_x[at], in_row, gradient_x)
+                    gradient_y = scaled_sum(weights_x[at], gradient, gradient_y)
                 row += row_length
             put_quad(means, LANES * k, mean)
-            put_quad(slopes_x, LANES * k, slope_x)
-            put_quad(slopes_y, LANES * k, slope_y)
-            put_quad(bulk, LANES * k, around)
-            if spreads:
-                put_quad(crowding_x, LANES * k, around_x)
-                put_quad(crowding_y, LANES * k, around_y)
+            if with_gradients:
+                put_quad(gradients_x, LANES * k, gradient_x)
+                put_quad(gradients_y, LANES * k, gradient_y)
 
     return gather
 
 
 @cache
-def make_grid_to_points(basis: Basis, spreads: bool) -> Callable[..., Any]:
-    """Gather velocity, its gradient and averages of the material around from the grid, and move the points.
+def make_grid_to_points(basis: Basis, ties: bool, spreads: bool) -> Callable[..., Any]:
+    """Give the points velocity, its gradient and, if `ties`, averages of the material around, and move them.
 
-    `spreads` is whether points move down the gradient of crowding, `memory` exp(-dt/tau). Reports per block of points:
-    kinetic energy [J/m], corners of the bounding box [m], the largest speed at which a point moves [m/s] and the
-    momentum of that motion [kg/s].
+    With `spreads`, points also move down the gradient of crowding. `memory` is exp(-dt/tau). Reports per block of
+    points: kinetic energy [J/m], corners of the bounding box [m], the largest speed at which a point moves [m/s] and
+    the momentum of that motion [kg/s].
     """
-    gather = make_gather(basis, spreads)
-    room_for_stencils, find_stencils = make_find_stencils(basis)
+    gather_velocities = make_gather(basis, component=NEW_VX, with_gradients=True)
+    gather_bulk = make_gather(basis, component=BULK, with_gradients=spreads)
+    room_for_stencils, find_stencils = make_find_stencils(basis, with_slopes=True)
 
     @njit(parallel=True, error_model="numpy", cache=True)
-    @named(f"{basis.name}_{spreads:d}_{CORE_MARK}")
+    @named(f"{basis.name}_{ties:d}{spreads:d}_{CORE_MARK}")
     def grid_to_points(  # type: ignore[no-untyped-def]
         rows, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, memory, reports
     ):
         points = len(rows[X])
         for block in prange(reports.shape[0]):
             stencils, room = room_for_stencils(), np.empty((7, GROUP * LANES))
-            energies = room[6]
-            gathered = Gathered(room[0], room[1], room[2], room[3], room[4], room[5])
-            sums = no_sums()
+            velocities, bulk = Gathered(room[0], room[1], room[2]), Gathered(room[3], room[4], room[5])
+            energies, sums = room[6], no_sums()
             for start in range(block * BLOCK, min(points, (block + 1) * BLOCK), GROUP):
                 first, last = np.uint64(start), np.uint64(min(start + GROUP, points))
                 find_stencils(rows[X], rows[Y], first, last, nodes_y, ghosts, origin, cell_size, stencils)
-                gather(last - first, nodes, nodes_y, stencils, gathered)
-                updated_fields(rows, first, last, cell_size, memory, stencils, gathered, energies)
-                sums = moved(rows, first, last, cell_size, dt, memory, spreads, stencils, gathered, energies, sums)
+                gather_velocities(last - first, nodes, nodes_y, stencils, velocities)
+                updated_gradients(rows, first, last, cell_size, memory, stencils, velocities, energies)
+                if ties:
+                    gather_bulk(last - first, nodes, nodes_y, stencils, bulk)
+                    updated_surroundings(rows, first, last, bulk)
+                sums = moved(rows, first, last, dt, memory, velocities, energies, sums)
+                if spreads:
+                    spread(rows, first, last, cell_size, dt, stencils, bulk)
             report(reports, block, point_mass, sums)
 
     return grid_to_points

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from materials import InputError, SymmetricTensor
 from materials.law import Law
 from mpm_core.body import Body
-from mpm_core.columns import DENSITY, FIRST_STATE, STIFFNESS, SXX, SYY, SZZ, VX, VY, X, Y, allocate
+from mpm_core.columns import DENSITY, FIRST_STATE, SXX, SYY, SZZ, VX, VY, X, Y, allocate
 from mpm_core.scene import BodySection, InitialStressSection, Scene
 from mpm_core.shapes import lattice
 
@@ -87,14 +87,11 @@ def _depth(positions: NDArray[np.float64], spacing: float) -> NDArray[np.float64
 
 
 def _initialise_state(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64]) -> None:
-    """Fill the columns of the law's state and of the stiffness rho c^2, one call for each distinct initial stress."""
+    """Fill the columns of the law's state, one call for each distinct initial stress."""
     stresses = np.column_stack([points[SXX], points[SYY], points[SZZ], points[DENSITY]])
     distinct, which = np.unique(stresses, axis=0, return_inverse=True)
-    states, stiffness = [], []
-    for xx, yy, zz, density in distinct.tolist():
-        stress = SymmetricTensor(xx, yy, zz, 0.0, 0.0, 0.0)
-        state = law.initial_state(stress, density, parameters)
-        states.append(state)
-        stiffness.append(density * law.sound_speed(stress, density, state, parameters) ** 2)
+    states = [
+        law.initial_state(SymmetricTensor(xx, yy, zz, 0.0, 0.0, 0.0), density, parameters)
+        for xx, yy, zz, density in distinct.tolist()
+    ]
     points[FIRST_STATE:] = np.array(states)[which].T.reshape(len(law.state._fields), points.shape[1])
-    points[STIFFNESS] = np.array(stiffness)[which]

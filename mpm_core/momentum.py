@@ -33,9 +33,15 @@ def clear(grid: Grid, reach: Reach) -> None:
 
 
 def update_velocities(grid: Grid, reach: Reach, gravity: tuple[float, float], dt: float) -> None:
-    """Turn what was scattered into old velocity, new velocity v + dt (f/m + g) [m/s], and averages for `volumes`."""
+    """Turn what was scattered into old velocity and new velocity v + dt (f/m + g) [m/s]."""
+    rows = (reach.first_rows, reach.last_rows)
+    _update(grid.nodes, grid.shape[1], *rows, dt * gravity[0], dt * gravity[1], dt)
+
+
+def average_surroundings(grid: Grid, reach: Reach) -> None:
+    """Turn the volumes and pressures that were scattered into the averages of which `volumes` are tied."""
     rows, room = (reach.first_rows, reach.last_rows), (*grid.rooms, grid.cell_size**2)
-    _update(grid.nodes, grid.shape[1], *rows, *room, dt * gravity[0], dt * gravity[1], dt)
+    _average(grid.nodes, grid.shape[1], *rows, *room)
 
 
 @njit(parallel=True, cache=True)
@@ -49,9 +55,7 @@ def _clear(nodes, nodes_y, first_rows, last_rows):  # type: ignore[no-untyped-de
 
 @njit(parallel=True, error_model="numpy", cache=True)
 @named(CORE_MARK)
-def _update(  # type: ignore[no-untyped-def]
-    nodes, nodes_y, first_rows, last_rows, rooms_x, rooms_y, cell, impulse_x, impulse_y, dt
-):
+def _update(nodes, nodes_y, first_rows, last_rows, impulse_x, impulse_y, dt):  # type: ignore[no-untyped-def]
     for i in prange(len(first_rows)):
         for j in range(first_rows[i], last_rows[i] + 1):
             node = np.uint64((i * nodes_y + j) * COMPONENTS)
@@ -64,6 +68,16 @@ def _update(  # type: ignore[no-untyped-def]
                 nodes[node + np.uint64(NEW_VY)] = old_y + dt * push_y + impulse_y
                 nodes[node + np.uint64(OLD_VX)] = old_x
                 nodes[node + np.uint64(OLD_VY)] = old_y
+
+
+@njit(parallel=True, error_model="numpy", cache=True)
+@named(CORE_MARK)
+def _average(nodes, nodes_y, first_rows, last_rows, rooms_x, rooms_y, cell):  # type: ignore[no-untyped-def]
+    for i in prange(len(first_rows)):
+        for j in range(first_rows[i], last_rows[i] + 1):
+            node = np.uint64((i * nodes_y + j) * COMPONENTS)
+            mass = nodes[node + np.uint64(MASS)]
+            if mass > 0.0:
                 volume = nodes[node + np.uint64(VOLUME)]
                 nodes[node + np.uint64(NODE_CROWDING)] = crowding_of(volume, cell * rooms_x[i] * rooms_y[j])
                 nodes[node + np.uint64(NODE_PRESSURE)] = nodes[node + np.uint64(VOLUME_PRESSURE)] / volume

@@ -7,7 +7,8 @@ brings the velocity field v + A (x - x_p) and the force of its stress,
     (m v)_i += w_i m (v + A (x_i - x_p));  f_i -= w_i V sigma (x_i - x_p) / D.
 
 Momentum and force are linear in the number of the node, `corner + a along_x + b along_y` for the node (a, b) of the
-stencil, so that one addition leads from node to node.
+stencil, so that one addition leads from node to node. Neighbours in memory mostly share their stencil: two of them go
+to it together, for the loads and stores of one.
 
 Points come in stripes of grid columns (`sorting`). Stripes of even number are scattered first, then those of odd
 number: within each half no two stripes share a node, so that the sums come out the same for any number of threads.
@@ -54,7 +55,12 @@ def prepare_amounts(rows, first, last, point_mass, cell_size, stencils, amounts)
     vx, vy, density = rows[VX], rows[VY], rows[DENSITY]
     axx, axy, ayx, ayy = rows[AXX], rows[AXY], rows[AYX], rows[AYY]
     sxx, syy, szz, sxy = rows[SXX], rows[SYY], rows[SZZ], rows[SXY]
-    _, _, places_x, places_y, moments_x, moments_y = stencils
+    places_x, places_y, per_moment_x, per_moment_y = (
+        stencils.x,
+        stencils.y,
+        stencils.per_moment_x,
+        stencils.per_moment_y,
+    )
     corners, along_x, along_y, bulk = amounts
     affine = point_mass * cell_size
     for p in range(first, last, LANES):
@@ -62,7 +68,7 @@ def prepare_amounts(rows, first, last, point_mass, cell_size, stencils, amounts)
         x, y = quad_at(places_x, k), quad_at(places_y, k)
         volume = point_mass / quad_at(density, p)
         scale = (-1.0 / cell_size) * volume
-        scale_x, scale_y = scale / quad_at(moments_x, k), scale / quad_at(moments_y, k)
+        scale_x, scale_y = scale * quad_at(per_moment_x, k), scale * quad_at(per_moment_y, k)
         px_x, py_x = affine * quad_at(axx, p), affine * quad_at(ayx, p)
         px_y, py_y = affine * quad_at(axy, p), affine * quad_at(ayy, p)
         fx_x, fy_x = scale_x * quad_at(sxx, p), scale_x * quad_at(sxy, p)
@@ -77,37 +83,95 @@ def prepare_amounts(rows, first, last, point_mass, cell_size, stencils, amounts)
         put_transposed(bulk, k, filled(point_mass), volume, volume * pressure, filled(0.0))
 
 
-@cache
-def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
-    """Scatter mass, volume, pressure, momentum and internal force of the stripes of one parity to the grid."""
+@register_jitable(forceinline=True)
+def brought_by(amounts, k):  # type: ignore[no-untyped-def]
+    """What point k of a group brings to its first node, what is added along x and y, and its bulk."""
+    corners, along_x, along_y, bulk = amounts
+    at = LANES * k
+    return quad_at(corners, at), quad_at(along_x, at), quad_at(along_y, at), quad_at(bulk, at)
+
+
+def make_scatter_one(basis: Basis) -> Callable[..., Any]:
+    """A function that adds what a point brings to its nodes."""
     width = basis.width
-    room_for_stencils, find_stencils = make_find_stencils(basis)
+
+    @register_jitable(forceinline=True)
+    @named(f"{basis.name}_{CORE_MARK}")
+    def scatter_one(row, row_length, k, nodes, stencils, amounts):  # type: ignore[no-untyped-def]
+        weights_x, weights_y = stencils.weights_x, stencils.weights_y
+        at_row, step_x, step_y, carried = brought_by(amounts, k)
+        for a in range(width):
+            weight_x = weights_x[np.uint64(a * GROUP) + k]
+            at_node, step, shared = weight_x * at_row, weight_x * step_y, weight_x * carried
+            for b in range(width):
+                node = row + np.uint64(b * COMPONENTS)
+                in_bulk = node + np.uint64(BULK)
+                weight = weights_y[np.uint64(b * GROUP) + k]
+                put_quad(nodes, node, scaled_sum(weight, at_node, quad_at(nodes, node)))
+                put_quad(nodes, in_bulk, scaled_sum(weight, shared, quad_at(nodes, in_bulk)))
+                at_node = at_node + step
+            at_row = at_row + step_x
+            row += row_length
+
+    return scatter_one
+
+
+def make_scatter_two(basis: Basis) -> Callable[..., Any]:
+    """A function that adds what a point and the next one bring to the nodes that they share."""
+    width = basis.width
+
+    @register_jitable(forceinline=True)
+    @named(f"{basis.name}_{CORE_MARK}")
+    def scatter_two(row, row_length, k, nodes, stencils, amounts):  # type: ignore[no-untyped-def]
+        weights_x, weights_y = stencils.weights_x, stencils.weights_y
+        m = k + np.uint64(1)
+        at_row, step_x, step_y, carried = brought_by(amounts, k)
+        at_row_2, step_x_2, step_y_2, carried_2 = brought_by(amounts, m)
+        for a in range(width):
+            weight, weight_2 = weights_x[np.uint64(a * GROUP) + k], weights_x[np.uint64(a * GROUP) + m]
+            at_node, step, shared = weight * at_row, weight * step_y, weight * carried
+            at_node_2, step_2, shared_2 = weight_2 * at_row_2, weight_2 * step_y_2, weight_2 * carried_2
+            for b in range(width):
+                node = row + np.uint64(b * COMPONENTS)
+                in_bulk = node + np.uint64(BULK)
+                weight, weight_2 = weights_y[np.uint64(b * GROUP) + k], weights_y[np.uint64(b * GROUP) + m]
+                with_first = scaled_sum(weight, at_node, quad_at(nodes, node))
+                put_quad(nodes, node, scaled_sum(weight_2, at_node_2, with_first))
+                with_first = scaled_sum(weight, shared, quad_at(nodes, in_bulk))
+                put_quad(nodes, in_bulk, scaled_sum(weight_2, shared_2, with_first))
+                at_node, at_node_2 = at_node + step, at_node_2 + step_2
+            at_row, at_row_2 = at_row + step_x, at_row_2 + step_x_2
+            row += row_length
+
+    return scatter_two
+
+
+def make_scatter(basis: Basis) -> Callable[..., Any]:
+    """A function that adds what the points of a group bring to the grid."""
+    scatter_one, scatter_two = make_scatter_one(basis), make_scatter_two(basis)
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{CORE_MARK}")
     def scatter(count, nodes, nodes_y, stencils, amounts):  # type: ignore[no-untyped-def]
-        starts, weights = stencils.starts, stencils.weights
-        corners, along_x, along_y, bulk = amounts
-        row_length = np.uint64(nodes_y * COMPONENTS)
-        for k in range(count):
+        starts, row_length = stencils.starts, np.uint64(nodes_y * COMPONENTS)
+        k = np.uint64(0)
+        while k < count:
             row = np.uint64(starts[k]) * np.uint64(COMPONENTS)
-            at_row, step_x, step_y = (
-                quad_at(corners, LANES * k),
-                quad_at(along_x, LANES * k),
-                quad_at(along_y, LANES * k),
-            )
-            carried = quad_at(bulk, LANES * k)
-            for a in range(width):
-                at_node = at_row
-                for b in range(width):
-                    node = row + np.uint64(b * COMPONENTS)
-                    in_bulk = node + np.uint64(BULK)
-                    weight = weights[np.uint64((a * width + b) * GROUP) + k]
-                    put_quad(nodes, node, scaled_sum(weight, at_node, quad_at(nodes, node)))
-                    put_quad(nodes, in_bulk, scaled_sum(weight, carried, quad_at(nodes, in_bulk)))
-                    at_node = at_node + step_y
-                at_row = at_row + step_x
-                row += row_length
+            if k + np.uint64(1) < count and starts[k + np.uint64(1)] == starts[k]:
+                scatter_two(row, row_length, k, nodes, stencils, amounts)
+                k += np.uint64(2)
+            else:
+                scatter_one(row, row_length, k, nodes, stencils, amounts)
+                k += np.uint64(1)
+
+    return scatter
+
+
+@cache
+def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
+    """Scatter mass, volume, pressure, momentum and internal force of the stripes of one parity to the grid."""
+    scatter = make_scatter(basis)
+    room_for_stencils, find_stencils = make_find_stencils(basis, with_slopes=False)
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{basis.name}_{CORE_MARK}")

@@ -151,6 +151,16 @@ def _where_equal(typing_context: Any, a: Any, b: Any, then: Any, otherwise: Any)
     return QUAD(QUAD, QUAD, QUAD, QUAD), generate
 
 
+@intrinsic
+def _some_equal(typing_context: Any, a: Any, b: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        equal = builder.fcmp_ordered("==", arguments[0], arguments[1])
+        bits = builder.bitcast(equal, ir.IntType(LANES))
+        return builder.icmp_unsigned("!=", bits, ir.Constant(ir.IntType(LANES), 0))
+
+    return types.boolean(QUAD, QUAD), generate
+
+
 def _smaller_of(builder: Any, a: Any, b: Any) -> Any:
     return builder.select(builder.fcmp_ordered("<", b, a), b, a)
 
@@ -262,6 +272,11 @@ def where_equal(a: Any, b: Any, then: Any, otherwise: Any) -> Any:
     return then if a == b else otherwise
 
 
+def some_equal(a: Any, b: Any) -> Any:
+    """Whether a = b, in any lane if they are quads."""
+    return a == b
+
+
 @overload(truncated)
 def _choose_truncated(a):  # type: ignore[no-untyped-def]
     if isinstance(a, QuadType):
@@ -297,3 +312,10 @@ def _choose_where_equal(a, b, then, otherwise):  # type: ignore[no-untyped-def]
             a, as_quad(b), as_quad(then), as_quad(otherwise)
         )
     return lambda a, b, then, otherwise: then if a == b else otherwise
+
+
+@overload(some_equal)
+def _choose_some_equal(a, b):  # type: ignore[no-untyped-def]
+    if isinstance(a, QuadType) or isinstance(b, QuadType):
+        return lambda a, b: _some_equal(as_quad(a), as_quad(b))
+    return lambda a, b: a == b

@@ -129,6 +129,11 @@ class TransferSection(Section):
         description="decay time of velocities below the grid's resolution (affine_flip only), and of the opening of "
         "points without stress [s]",
     )
+    spreading: bool = Field(
+        default=False,
+        description="points of loose grains also move down the gradient of crowding; for flows of long duration, where "
+        "points crowd",
+    )
 
 
 class InitialStressSection(Section):

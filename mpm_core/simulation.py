@@ -31,7 +31,7 @@ from mpm_core.time_step import (
     strain_rates,
     what_sets_the_step,
 )
-from mpm_core.volumes import STEPS_PER_SPREADING
+from mpm_core.volumes import STEPS_PER_TIE
 
 # A volumetric strain increment beyond which no explicit step can be right.
 LARGEST_INCREMENT = 0.5
@@ -101,7 +101,7 @@ class Simulation:
         self.fields = chosen_fields(scene.output.fields, [body.law for body in self.bodies])
         started = time.perf_counter()
         for body in self.bodies:
-            body.choose_kernels(self.basis, keeps_shear_strain="shear_strain" in self.fields)
+            body.choose_kernels(self.basis, "shear_strain" in self.fields, scene.transfer.spreading)
         initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
         self.walls = _walls(scene)
@@ -137,6 +137,7 @@ class Simulation:
         """
         grid = self.grid
         kick = 0.5 * (self.last_step + dt)
+        tied = STEPS_PER_TIE * dt if self.steps % STEPS_PER_TIE == 0 else 0.0
         self._sort_if_drifted()
         momentum.clear(grid, self.reach)
         for body in self.bodies:
@@ -146,15 +147,17 @@ class Simulation:
         for axis in self.periodic_axes:
             join_periodic(grid.nodes, grid, axis)
         momentum.update_velocities(grid, self.reach, self.scene.gravity, kick)
+        if tied > 0.0:
+            momentum.average_surroundings(grid, self.reach)
         for wall in self.walls:
             taken = hold_at_wall(grid, wall, self.window)
             self.ledger.wall_work += taken.work
             self.ledger.wall_friction += taken.friction
         hold_nodes(grid, self.held_nodes)
         for body in self.bodies:
-            body.from_grid(grid, dt, self._memory(dt), spreads=self.steps % STEPS_PER_SPREADING == 0)
+            body.from_grid(grid, dt, self._memory(dt), ties=tied > 0.0)
         for body in self.bodies:
-            body.update_stress(dt, dt / self.scene.transfer.time_constant)
+            body.update_stress(dt, tied, tied / self.scene.transfer.time_constant)
         self.time += dt
         self.last_step = dt
         self.steps += 1

@@ -17,53 +17,84 @@ GROUP = 64
 
 
 class Stencils(NamedTuple):
-    """What the transfers need of each point of a group; lengths in cells.
+    """What the transfers need of each point of a group; per axis, those of one node for the whole group side by side.
 
-    starts              number of the first node
-    weights             of all nodes, those of one node for the whole group side by side
-    x, y                distance from the first node
-    moment_x, moment_y  second moments of the weights
+    starts                number of the first node
+    weights_x, weights_y  w
+    slopes_x, slopes_y    w (i - f)/(h moment) [1/m], of which the moving-least-squares gradient is made
+    x, y                  distance f from the first node, in cells
+    moment_x, moment_y    second moments of the weights, in cells squared
+    per_moment_x, ...     their inverses
     """
 
     starts: Any
-    weights: Any
+    weights_x: Any
+    weights_y: Any
+    slopes_x: Any
+    slopes_y: Any
     x: Any
     y: Any
     moment_x: Any
     moment_y: Any
+    per_moment_x: Any
+    per_moment_y: Any
 
 
 @cache
-def make_find_stencils(basis: Basis) -> tuple[Callable[..., Any], Callable[..., Any]]:
+def make_find_stencils(basis: Basis, with_slopes: bool) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """Functions that make room for the stencils of a group, and fill it for the points from `first` to `last`."""
     width, stencil = basis.width, make_stencil(basis)
-    nodes = width * width
+    mark = f"{basis.name}_{with_slopes:d}_{CORE_MARK}"
 
     @register_jitable(forceinline=True)
-    @named(f"{basis.name}_{CORE_MARK}")
+    @named(mark)
     def room_for_stencils():  # type: ignore[no-untyped-def]
-        room = np.empty((5 + nodes) * GROUP)
-        starts, x, y = room[:GROUP], room[GROUP : 2 * GROUP], room[2 * GROUP : 3 * GROUP]
-        moment_x, moment_y = room[3 * GROUP : 4 * GROUP], room[4 * GROUP : 5 * GROUP]
-        return Stencils(starts, room[5 * GROUP :], x, y, moment_x, moment_y)
+        per_node, per_point = np.empty((4, width * GROUP)), np.empty((7, GROUP))
+        return Stencils(
+            per_point[0],
+            per_node[0],
+            per_node[1],
+            per_node[2],
+            per_node[3],
+            per_point[1],
+            per_point[2],
+            per_point[3],
+            per_point[4],
+            per_point[5],
+            per_point[6],
+        )
 
     @register_jitable(forceinline=True)
-    @named(f"{basis.name}_{CORE_MARK}")
+    @named(mark)
+    def put_slopes(slopes, k, weights, f, scale):  # type: ignore[no-untyped-def]
+        for a in range(width):
+            put_quad(slopes, a * GROUP + k, weights[a] * (float(a) - f) * scale)
+
+    @register_jitable(forceinline=True)
+    @named(mark)
     def find_stencils(x, y, first, last, nodes_y, ghosts, origin, cell_size, stencils):  # type: ignore[no-untyped-def]
         inverse_size = 1.0 / cell_size
-        starts, weights, places_x, places_y, moments_x, moments_y = stencils
         for p in range(first, last, LANES):
             k = p - first
-            i, fx, wx, moment_x = stencil((quad_at(x, p) - origin[0]) * inverse_size, ghosts[0], ghosts[1])
-            j, fy, wy, moment_y = stencil((quad_at(y, p) - origin[1]) * inverse_size, ghosts[2], ghosts[3])
-            put_quad(starts, k, i * nodes_y + j)
+            i, fx, wx, moment_x, per_moment_x = stencil(
+                (quad_at(x, p) - origin[0]) * inverse_size, ghosts[0], ghosts[1]
+            )
+            j, fy, wy, moment_y, per_moment_y = stencil(
+                (quad_at(y, p) - origin[1]) * inverse_size, ghosts[2], ghosts[3]
+            )
+            put_quad(stencils.starts, k, i * nodes_y + j)
             for a in range(width):
-                for b in range(width):
-                    put_quad(weights, (a * width + b) * GROUP + k, wx[a] * wy[b])
-            put_quad(places_x, k, fx)
-            put_quad(places_y, k, fy)
-            put_quad(moments_x, k, moment_x)
-            put_quad(moments_y, k, moment_y)
+                put_quad(stencils.weights_x, a * GROUP + k, wx[a])
+                put_quad(stencils.weights_y, a * GROUP + k, wy[a])
+            if with_slopes:
+                put_slopes(stencils.slopes_x, k, wx, fx, inverse_size * per_moment_x)
+                put_slopes(stencils.slopes_y, k, wy, fy, inverse_size * per_moment_y)
+            put_quad(stencils.x, k, fx)
+            put_quad(stencils.y, k, fy)
+            put_quad(stencils.moment_x, k, moment_x)
+            put_quad(stencils.moment_y, k, moment_y)
+            put_quad(stencils.per_moment_x, k, per_moment_x)
+            put_quad(stencils.per_moment_y, k, per_moment_y)
 
     return room_for_stencils, find_stencils
 

@@ -26,7 +26,6 @@ from mpm_core.columns import (
     MEAN_DENSITY,
     MEAN_PRESSURE,
     SHEAR_STRAIN,
-    STIFFNESS,
     SXX,
     SXY,
     SYY,
@@ -34,7 +33,7 @@ from mpm_core.columns import (
     X,
 )
 from mpm_core.grid_to_points import BLOCK
-from mpm_core.law_at_points import make_apply_law, make_largest_signal_speed, ordered_bits
+from mpm_core.law_at_points import make_apply_law, make_find_stiffness, make_largest_signal_speed, ordered_bits
 from mpm_core.sources import CORE_MARK
 from mpm_core.volumes import SQUEEZE, closing_strain, evening_share, evening_strain
 
@@ -64,21 +63,21 @@ def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
-def tie_volumes(rows, first, last, dt, exchange, ties):  # type: ignore[no-untyped-def]
-    """The compressive strain of the step that ties the volumes of points to one another, into `ties`."""
+def tie_volumes(rows, first, last, duration, exchange, stiffness, ties):  # type: ignore[no-untyped-def]
+    """The compressive strain that ties the volumes of points to one another for a time [s], into `ties`."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     sxx, syy, szz = rows[SXX], rows[SYY], rows[SZZ]
-    density, crowding, stiffness = rows[DENSITY], rows[CROWDING], rows[STIFFNESS]
+    density, crowding = rows[DENSITY], rows[CROWDING]
     mean_density, mean_pressure = rows[MEAN_DENSITY], rows[MEAN_PRESSURE]
     for p in range(first, last):
         motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
         shear_rate = shear_strain_rate(motion)
         share = evening_share(shear_rate, exchange)
         pressure = (sxx[p] + syy[p] + szz[p]) * -THIRD
-        evening = evening_strain(pressure, mean_pressure[p], stiffness[p], share)
+        evening = evening_strain(pressure, mean_pressure[p], stiffness[p - first], share)
         closing = closing_strain(density[p], mean_density[p], share)
         has_contact = sxx[p] != 0.0 or syy[p] != 0.0
-        ties[p - first] = (evening if has_contact else closing) + SQUEEZE * dt * shear_rate * crowding[p]
+        ties[p - first] = (evening if has_contact else closing) + SQUEEZE * duration * shear_rate * crowding[p]
 
 
 @register_jitable
@@ -126,29 +125,31 @@ def work_done(rows, first, last, room):  # type: ignore[no-untyped-def]
 
 
 @cache
-def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, ties_volumes: bool) -> Callable[..., Any]:
-    """The stress pass of a law; it takes the law's parameters as a plain tuple, and dt over the time constant.
+def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..., Any]:
+    """The stress pass of a law; it takes the law's parameters as a plain tuple.
 
-    `ties_volumes` says whether the material is loose grains, whose points take on the strain of `volumes`.
-
-    Reports per block of points: the largest signal speed c + |v| [m/s], the work of the stress on the strain
-    [J/m], and the largest volumetric strain increment of the step. Where anything is not finite, the last one is NaN.
+    It ties the volumes of the points for a time `tied` [s], zero for not in this step; `exchange` is that time over the
+    time constant of the transfer. Reports per block of points: the largest signal speed c + |v| [m/s], the work of the
+    stress on the strain [J/m], and the largest volumetric strain increment of the step. Where anything is not finite,
+    the last one is NaN.
     """
-    mark = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}{ties_volumes:d}"
-    apply_law, largest_signal_speed = make_apply_law(law, mark), make_largest_signal_speed(law, mark)
+    mark = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}"
+    apply_law, find_stiffness = make_apply_law(law, mark), make_find_stiffness(law, mark)
+    largest_signal_speed = make_largest_signal_speed(law, mark)
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(mark)
-    def stress_pass(rows, point_mass, parameters, dt, exchange, reports):  # type: ignore[no-untyped-def]
+    def stress_pass(rows, point_mass, parameters, dt, tied, exchange, reports):  # type: ignore[no-untyped-def]
         count = len(rows[X])
         for block in prange(reports.shape[0]):
             arrays = np.zeros((3, GROUP))
-            ties, room = arrays[0], (arrays[1], arrays[2])
+            ties, stiffness, room = arrays[0], arrays[1], (arrays[1], arrays[2])
             fastest, largest, work = np.int64(0), np.int64(0), 0.0
             for start in range(block * BLOCK, min(count, (block + 1) * BLOCK), GROUP):
                 first, last = np.uint64(start), np.uint64(min(count, start + GROUP))
-                if ties_volumes:
-                    tie_volumes(rows, first, last, dt, exchange, ties)
+                if tied > 0.0:
+                    find_stiffness(rows, first, last, parameters, stiffness)
+                    tie_volumes(rows, first, last, tied, exchange, stiffness, ties)
                 increment = bring_forward(rows, first, last, dt, ties, room, keeps_shear_strain)
                 apply_law(rows, first, last, ties, parameters, dt)
                 speed = largest_signal_speed(rows, first, last, parameters)

@@ -35,9 +35,8 @@ EVENING = 2.0
 # The share of crowding that a unit of shear strain squeezes out, and the rate of spreading over that of shear.
 SQUEEZE = 0.4
 SPREAD = 12.0
-# Points spread in one step of so many, and so many times as fast: the moments of the crowding cost a tenth of a step,
-# and crowding changes over hundreds of steps.
-STEPS_PER_SPREADING = 4
+# Volumes are tied in one step of so many, for the time of all of them: they drift apart over hundreds of steps.
+STEPS_PER_TIE = 4
 
 # The filling above which a node is taken to lie inside the material.
 NEARLY_FULL = 0.9
@@ -78,5 +77,5 @@ def closing_strain(density, mean_density, share):  # type: ignore[no-untyped-def
 @register_jitable
 def spreading_rate(shear_rate, dt):  # type: ignore[no-untyped-def]
     """The rate of a spreading step, but less than one per step [1/s]: no point then leaps past its neighbours."""
-    rate = STEPS_PER_SPREADING * SPREAD * shear_rate
+    rate = STEPS_PER_TIE * SPREAD * shear_rate
     return rate / (1.0 + rate * dt)

@@ -64,7 +64,7 @@ def test_the_initial_state_is_in_equilibrium_with_the_initial_stress(name):
     (body,) = simulation(COLUMN, changes).bodies
     before = body.points.copy()
     assert not body.points[LXX : LYY + 1].any()
-    body.update_stress(1e-4, 0.0)
+    body.update_stress(1e-4)
     np.testing.assert_allclose(body.points[SXX : SXY + 1], before[SXX : SXY + 1], rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(body.points[DENSITY:], before[DENSITY:], rtol=1e-12)
 

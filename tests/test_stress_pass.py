@@ -24,7 +24,7 @@ def test_a_rigid_rotation_turns_the_stress_and_keeps_its_invariants():
     turns, steps, spin = 3, 3000, 2.0 * math.pi
     body.points[LXY], body.points[LYX] = -spin, spin
     for _ in range(steps):
-        body.update_stress(turns / steps, 0.0)
+        body.update_stress(turns / steps)
     xx, yy, zz, xy = body.points[SXX : SXY + 1]
     np.testing.assert_allclose(xx + yy, stress[0] + stress[1], rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(xx * yy - xy**2, stress[0] * stress[1] - stress[3] ** 2, rtol=1e-9, atol=1e-6)
@@ -39,7 +39,7 @@ def test_a_quarter_turn_carries_the_vertical_stress_into_the_horizontal_one():
     body.points[[SXX, SYY, SXY]] = [[1.0], [-2.0], [0.25]]
     body.points[LXY], body.points[LYX] = -1.0, 1.0
     for _ in range(1000):
-        body.update_stress(0.5 * math.pi / 1000, 0.0)
+        body.update_stress(0.5 * math.pi / 1000)
     np.testing.assert_allclose(body.points[[SXX, SYY, SXY], 0], [-2.0, 1.0, -0.25], atol=1e-5)
 
 
@@ -48,7 +48,7 @@ def test_the_density_follows_the_volume_to_third_order_in_the_step():
     for increment in (0.2, 0.1):
         body = one_body()
         body.points[LXX], body.points[LYY] = -0.7, -0.3
-        body.update_stress(increment, 0.0)
+        body.update_stress(increment)
         errors.append(abs(body.points[DENSITY, 0] / 1000.0 - math.exp(increment)))
     assert errors[1] < 0.1**3
     assert errors[0] / errors[1] == pytest.approx(8.0, rel=0.2)
@@ -61,7 +61,7 @@ def test_shear_strain_and_work_of_simple_shear_are_those_of_the_formula():
     body.points[LXY] = rate
     work = 0.0
     for _ in range(steps):
-        body.update_stress(dt, 0.0)
+        body.update_stress(dt)
         work += body.stress_reports[:, INTERNAL_WORK].sum()
     strain = rate * dt * steps
     np.testing.assert_allclose(body.points[SHEAR_STRAIN], 0.5 * strain, rtol=1e-12)
@@ -74,11 +74,11 @@ def test_shear_strain_and_work_of_simple_shear_are_those_of_the_formula():
 def test_shear_strain_is_kept_only_for_a_scene_that_writes_it():
     body = one_body(**{"output.fields": ["velocity"]})
     body.points[LXY] = 1.0
-    body.update_stress(1e-3, 0.0)
+    body.update_stress(1e-3)
     assert not body.points[SHEAR_STRAIN].any()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems may have no OpenMP")
 def test_threads_are_not_those_that_spin_at_the_end_of_a_process():
-    one_body().update_stress(1e-4, 0.0)
+    one_body().update_stress(1e-4)
     assert numba.threading_layer() == "omp"

@@ -9,7 +9,7 @@ from mpm_core.columns import CROWDING, DENSITY, LXY, MEAN_DENSITY, MEAN_PRESSURE
 from mpm_core.grid import COMPONENTS, GHOSTS, NODE_CROWDING, Grid
 from mpm_core.volumes import (
     NEARLY_FULL,
-    STEPS_PER_SPREADING,
+    STEPS_PER_TIE,
     closing_strain,
     crowding_of,
     evening_share,
@@ -37,7 +37,7 @@ def test_the_room_of_a_node_is_the_integral_of_its_shape_function_over_the_domai
     stencil = make_stencil(basis)
     integrals = np.zeros(grid.shape[0])
     for coordinate in GHOSTS + (np.arange(cells * fine) + 0.5) / fine:
-        first, _, weights, _ = stencil(coordinate, *grid.ghosts[:2])
+        first, _, weights, _, _ = stencil(coordinate, *grid.ghosts[:2])
         integrals[first : first + basis.width] += np.array(weights) / fine
     inside = slice(GHOSTS, GHOSTS + cells + 1)
     np.testing.assert_allclose(integrals[inside], grid.rooms[0][inside], atol=1e-6)
@@ -78,12 +78,12 @@ def test_the_pressures_of_a_sheared_block_even_out_and_its_volume_stays():
     body.points[DENSITY] *= 1.0 + 1e-3 * np.random.default_rng(1).normal(size=body.count)
     volume = (body.point_mass / body.points[DENSITY]).sum()
     body.points[LXY] = 1e-6
-    body.update_stress(1e-9, 0.0)
+    body.update_stress(1e-9)
     scatter = pressures(body).std()
     for _ in range(20):
         body.points[LXY] = 5.0
         body.points[[MEAN_PRESSURE, MEAN_DENSITY]] = [[pressures(body).mean()], [1000.0]]
-        body.update_stress(1e-3, 0.1)
+        body.update_stress(1e-3, 1e-3, 0.1)
     assert pressures(body).std() < 0.3 * scatter
     assert (body.point_mass / body.points[DENSITY]).sum() == pytest.approx(volume, rel=1e-4)
 
@@ -93,7 +93,7 @@ def test_material_that_carries_tension_is_left_alone():
     for mean_pressure, crowding in ((0.0, 0.0), (1e3, 0.5)):
         (body,) = simulation(BLOCK).bodies
         body.points[LXY], body.points[MEAN_PRESSURE], body.points[CROWDING] = 5.0, mean_pressure, crowding
-        body.update_stress(1e-3, 0.1)
+        body.update_stress(1e-3, 1e-3, 0.1)
         results.append(body.points[SXX : SXY + 2].copy())
     np.testing.assert_array_equal(*results)
 
@@ -103,13 +103,14 @@ def test_crowded_grains_are_squeezed():
     body.points[LXY], body.points[CROWDING] = 5.0, 0.2
     body.points[[MEAN_PRESSURE, MEAN_DENSITY]] = [[100.0], [1000.0]]
     before = body.points[DENSITY].copy()
-    body.update_stress(1e-3, 0.0)
+    body.update_stress(1e-3, 1e-3, 0.0)
     assert (body.points[DENSITY] > before).all()
 
 
 @pytest.mark.parametrize(("material", "apart"), [(LOOSE, True), ({}, False)])
 def test_crowded_grains_move_apart(material, apart):
-    case = simulation(BLOCK, {**material, "body.0.shape": FILLING, "transfer.scheme": "apic"})
+    transfer = {"transfer.scheme": "apic", "transfer.spreading": True}
+    case = simulation(BLOCK, {**material, **transfer, "body.0.shape": FILLING})
     case.walls.clear()
     (body,) = case.bodies
     set_affine_velocity(body, (0.0, 0.0), [[0.0, 2.0], [0.0, 0.0]])
@@ -120,7 +121,7 @@ def test_crowded_grains_move_apart(material, apart):
     left = (np.abs(body.points[Y] - 0.4) < 0.03) & (np.abs(body.points[X] - 0.4) < 0.03)
     before = body.points[X, left].copy()
     dt = 1e-4
-    case.steps = STEPS_PER_SPREADING
+    case.steps = STEPS_PER_TIE
     case.step(dt)
     moved = (body.points[X, left] - before) / dt - body.points[VX, left]
     assert (moved < -1e-3).all() if apart else np.abs(moved).max() < 1e-6

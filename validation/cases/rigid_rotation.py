@@ -70,10 +70,10 @@ def _withhold_spin(body: Body) -> None:
     """Show the stress pass the symmetric part of the velocity gradient only."""
     update = body.update_stress
 
-    def without_spin(dt: float, exchange: float) -> None:
+    def without_spin(dt: float, tied: float, exchange: float) -> None:
         gradient = body.points[[LXY, LYX]]
         body.points[[LXY, LYX]] = gradient.mean(axis=0)
-        update(dt, exchange)
+        update(dt, tied, exchange)
         body.points[[LXY, LYX]] = gradient
 
     body.update_stress = without_spin  # type: ignore[method-assign]
