@@ -317,5 +317,5 @@ def _choose_where_equal(a, b, then, otherwise):  # type: ignore[no-untyped-def]
 @overload(some_equal)
 def _choose_some_equal(a, b):  # type: ignore[no-untyped-def]
     if isinstance(a, QuadType) or isinstance(b, QuadType):
-        return lambda a, b: _some_equal(as_quad(a), as_quad(b))
+        return lambda a, b: _some_equal(as_quad(a), as_quad(b))  # type: ignore[call-arg]
     return lambda a, b: a == b
