@@ -1,8 +1,10 @@
 """Start LIGGGHTS and YADE: time limit, log, and their failures as one clear line."""
 
+import os
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import time
 from collections.abc import Callable
@@ -76,15 +78,22 @@ def run_program(
 ) -> Cost:
     """Run `deck` in `folder` with its output in `log.txt`; return what it cost.
 
-    `report` is given the last line of the log now and then. Raises SimulationError with the cause if the code fails or
-    takes longer than `time_limit` [s], InputError if it is not installed.
+    `report` is given the last line of the log now and then; whatever it raises ends the code and all that it started.
+    Raises SimulationError with the cause if the code fails or takes longer than `time_limit` [s], InputError if it is
+    not installed.
     """
     command = program.command(deck)
     log = folder / "log.txt"
     start, used = time.monotonic(), _processor_time()
     with log.open("wb") as output:
+        # A session of its own: signals of the terminal reach it through this process only, and it ends as a whole.
         process = subprocess.Popen(
-            command, cwd=folder, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT
+            command,
+            cwd=folder,
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
         )
         try:
             while process.poll() is None:
@@ -94,7 +103,7 @@ def run_program(
                 report(_last_line(log))
         finally:
             if process.poll() is None:
-                process.kill()
+                os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
     text = log.read_text(encoding="utf-8", errors="replace")
     cause = failure(text)
