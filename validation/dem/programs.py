@@ -56,9 +56,10 @@ KNOWN_FAILURES = (
 def installed_version(program: Program) -> str:
     """The version a code prints of itself, 'unknown' if it prints none; raises InputError if it is missing."""
     executable = program.command("")[0]
-    flag = "--version" if program is YADE else "-help"
+    # LIGGGHTS would leave its log in the working directory.
+    flags = ["--version"] if program is YADE else ["-log", "none", "-help"]
     answer = subprocess.run(
-        [executable, flag], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60, check=False
+        [executable, *flags], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60, check=False
     )
     text = answer.stdout + answer.stderr
     found = re.search(program.version_pattern, text) or re.search(r"[Vv]ersion:?\s+(\S+)", text)
