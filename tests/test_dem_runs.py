@@ -17,6 +17,8 @@ from validation.dem.collapse import floor_of
 from validation.dem.packing import Packing, cut
 from validation.dem.programs import Program, failure, run_program
 from validation.dem.runs import Run, inputs_hash, runs_of
+from validation.dem_report.reference_set import REFERENCE
+from validation.grains.observation import read_observation
 
 
 def test_both_codes_are_listed():
@@ -131,3 +133,11 @@ def test_a_signal_ends_the_code_too_and_leaves_the_batch_resumable(tmp_path, num
         assert not list(tmp_path.glob("**/run.json"))
         for path in tmp_path.glob("*/*/pids"):
             path.unlink()
+
+
+def test_reference_set_is_small_and_shows_stress_of_one_packing_by_each_code():
+    paths = sorted((REFERENCE / "collapse").iterdir())
+    shown = [path.stem.rpartition("_")[0] for path in paths if "stress_zz" in read_observation(path).snapshots]
+    assert len(set(shown)) == len(shown)
+    assert {name.partition("_")[0] for name in shown} == {path.stem.partition("_")[0] for path in paths}
+    assert sum(path.stat().st_size for path in REFERENCE.rglob("*") if path.is_file()) < 6.5e6
