@@ -40,28 +40,42 @@ def run(
     ] = None,
     time_limit: Annotated[float, typer.Option("--time-limit", help="Longest time for one deck [s].")] = 7200.0,
 ) -> None:
-    """Run cases that are not finished yet; what is finished in the folder is kept. Exit code 1 if a run fails."""
+    """Run cases that are not finished yet; what is finished in the folder is kept.
+
+    Exit code 1 if a run fails. Ctrl-C and SIGTERM end the running code too; the same command then goes on.
+    """
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-    from materials import InputError
+    from materials import InputError, SimulationError
     from validation.dem.batch import case_named, perform_all
     from validation.dem.programs import PROGRAMS
-    from validation.dem.runs import runs_of
+    from validation.dem.runs import Run, finished, runs_of
+    from validation.dem.stopping import Stopped, noting_stop_requests
 
     if code is not None and code not in PROGRAMS:
         raise InputError(f"--code {code}: allowed are {', '.join(PROGRAMS)}")
     runs = [found for name in names for found in runs_of(case_named(name), code, tuple(seed or ()))]
     console = Console(stderr=True)
     columns = (MofNCompleteColumn(), BarColumn(), TimeElapsedColumn(), TextColumn("{task.fields[state]}"))
-    with Progress(*columns, console=console, disable=not console.is_terminal) as bar:
+    with (
+        noting_stop_requests() as stop_request,
+        Progress(*columns, console=console, disable=not console.is_terminal) as bar,
+    ):
         task = bar.add_task("", total=len(runs), state="")
-        outcomes = perform_all(
-            runs,
-            out,
-            time_limit,
-            lambda current, line: bar.update(task, completed=runs.index(current), state=f"{current.name}: {line}"),
-        )
+
+        def report(current: Run, line: str) -> None:
+            bar.update(task, completed=runs.index(current), state=f"{current.name}: {line}")
+            stop_request.obey()
+
+        try:
+            outcomes = perform_all(runs, out, time_limit, report)
+        except Stopped as stopped:
+            count = sum(finished(one, out) for one in runs)
+            raise SimulationError(
+                f"stopped by {stopped}; {count} of {len(runs)} runs are finished in {out}, "
+                "the same command goes on with the others"
+            ) from None
         bar.update(task, completed=len(runs))
     for outcome in outcomes:
         typer.echo(f"{outcome.run.name}: {outcome.text}")

@@ -4,6 +4,7 @@ import keyword
 import re
 import sys
 from importlib.resources import files
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
@@ -34,9 +35,13 @@ def new_law(
         for file in files("plugins").joinpath("template").iterdir()
         if file.name.endswith(WRITTEN)
     }
-    folder.mkdir(parents=True)
-    for file_name, text in sorted(contents.items()):
-        (folder / file_name).write_text(text, encoding="utf-8")
+    try:
+        folder.mkdir(parents=True)
+        for file_name, text in contents.items():
+            (folder / file_name).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written: {error.strerror}") from None
+    for file_name in sorted(contents):
         typer.echo(f"  {folder / file_name}")
     typer.echo(f"next: cd {folder}; pip install -e .; python -m pytest test_{name}.py; grainlaw check {name}")
 
@@ -46,7 +51,9 @@ def _check_name(name: str) -> None:
         raise InputError(f"'{name}' is no name for a law; allowed: lower_case_with_underscores, such as cemented_sand")
     if name in registry().laws:
         raise InputError(f"the name '{name}' is taken by {registry().laws[name].origin}")
-    if name in sys.stdlib_module_names or name in ("materials", "plugins", "validation", "grainlaw"):
+    installed = find_spec(name)
+    # A folder without Python files is found too, but has no origin: it may be the one that another try made.
+    if name in sys.stdlib_module_names or (installed is not None and installed.origin is not None):
         raise InputError(f"the name '{name}' is that of another Python module; choose one of your own")
 
 

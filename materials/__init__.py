@@ -9,6 +9,8 @@ from materials.elastic_energy import (
     energy_of_shear,
 )
 from materials.errors import InputError, SimulationError
+from materials.flowing_cam_clay import FlowingCamClay, growth_of_surface
+from materials.flowing_cam_clay_step import FlowingStep, flowing_cam_clay_step
 from materials.gap import Contact, after_closing
 from materials.law import HOOK_VERSION, Law, ParameterSet
 from materials.pointwise import pointwise
@@ -47,6 +49,8 @@ __all__ = [
     "CamClay",
     "CamClayStep",
     "Contact",
+    "FlowingCamClay",
+    "FlowingStep",
     "InputError",
     "Law",
     "Parameter",
@@ -71,9 +75,11 @@ __all__ = [
     "energy_of_logarithmic_compression",
     "energy_of_shear",
     "equivalent_shear_stress",
+    "flowing_cam_clay_step",
     "flowing_wave_speed",
     "friction_of_inertial_number",
     "get_material",
+    "growth_of_surface",
     "half_norm",
     "hookimpl",
     "inertial_number",

@@ -100,7 +100,10 @@ def _check_declaration(name: str, declaration: Declaration) -> None:
     if not declaration.doc.strip():
         raise DeclarationError(f"'{name}' declares no doc")
     if isinstance(declaration, Parameter):
-        _ = declaration.interval
+        try:
+            _ = declaration.interval
+        except DeclarationError as error:
+            raise DeclarationError(f"'{name}': {error}") from None
 
 
 def checked_parameters(law_name: str, tuple_class: type[Any], values: dict[str, Any]) -> Any:
@@ -121,6 +124,7 @@ def checked_parameters(law_name: str, tuple_class: type[Any], values: dict[str, 
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise InputError(f"{law_name}.{name} = {value!r} is not a number")
         if not declarations[name].interval.contains(value):
-            allowed = f"{declarations[name].bounds} {declarations[name].unit}"
+            unit = "" if declarations[name].unit == "1" else f" {declarations[name].unit}"
+            allowed = f"{declarations[name].bounds}{unit}"
             raise InputError(f"{law_name}.{name} = {value} is out of bounds; allowed: {allowed}")
     return tuple_class(**{name: float(complete[name]) for name in tuple_class._fields})

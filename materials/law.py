@@ -131,6 +131,8 @@ def check_law(law: Law) -> None:
 
 def _check_hook_version(law: Law) -> None:
     written_for = law.hook_version
+    if isinstance(written_for, bool) or not isinstance(written_for, int):
+        raise DeclarationError(f"hook_version = {written_for!r} is not a whole number")
     understood = f"this grainlaw understands {OLDEST_HOOK_VERSION} to {HOOK_VERSION}"
     if written_for > HOOK_VERSION:
         raise DeclarationError(f"written for hook version {written_for}; {understood}: it needs a newer grainlaw")
@@ -148,8 +150,9 @@ def _check_hook_version(law: Law) -> None:
 def _check_one_step(law: Law, name: str, parameter_set: ParameterSet) -> None:
     parameters = parameter_set.parameters
     for parameter, declaration in law.parameter_declarations.items():
-        if not declaration.interval.contains(getattr(parameters, parameter)):
-            raise DeclarationError(f"parameter set '{name}': {parameter} is outside {declaration.bounds}")
+        value = getattr(parameters, parameter)
+        if not declaration.interval.contains(value):
+            raise DeclarationError(f"parameter set '{name}': {parameter} = {value} is outside {declaration.bounds}")
     if reason := law.contradiction(parameters):
         raise DeclarationError(f"parameter set '{name}': {reason}")
     try:

@@ -2,6 +2,7 @@
 
     p_dot = K d(eps_v)/dt,   s_dot = 2 G D_d,   G = 3 (1 - 2 nu) / (2 (1 + nu)) K
 
+Source: Hooke's law of isotropic bodies, Landau & Lifshitz (1970), Theory of Elasticity, section 4, as a rate.
 Conventions: stress and strain rate tension-positive, pressure and volumetric strain compression-positive.
 Valid for small elastic strains; the caller's objective rate carries large rotations.
 """

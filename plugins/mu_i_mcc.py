@@ -19,13 +19,8 @@ at q/p = M(I) and v = v_csl(p) exp(I/I_v); and I_M, I_v -> infinity leave M = M_
 A change of the shear rate moves the surface at once, p_c0 only as volume changes: hence overshoot and dilation.
 Dissipation is (p (2p - p_c) + 2 q^2/M^2) dLambda = p p_c dLambda >= 0.
 
-A step. I is the plastic inertial number of the step, with p at its end. For an assumed I the step is one of Cam Clay
-with M(I) and p_c(I) (`cam_clay_step`, exact and bracketed), and gives back a plastic shear, so an inertial number. A
-larger assumed I makes a larger surface, so less plastic shear: what is found falls while what is assumed rises. The one
-root is found by the secant method, begun at the I of the step before, with bisection wherever that leaves its bracket.
-The return of Cam Clay leaves a trace of F, which a fast step would magnify in I; its end lies exactly on the surface of
-a slightly different I, and that one counts as assumed. An elastic step gives the largest I at which there is flow.
-A step of some per cent can soften so much that its return jumps over that root; it is then taken in equal parts.
+A step. I is the plastic inertial number of the step, with p at its end, found together with the return to (1) between
+brackets (`materials/flowing_cam_clay_step.py`); (2) and (7) are in `materials/flowing_cam_clay.py`.
 
 Grains carry no tension: opened points keep a gap, as in `modified_cam_clay`.
 
@@ -40,8 +35,7 @@ import math
 from typing import Annotated, Any, NamedTuple
 
 from materials import (
-    CamClay,
-    CamClayStep,
+    FlowingCamClay,
     Law,
     Parameter,
     ParameterSet,
@@ -49,14 +43,12 @@ from materials import (
     SymmetricTensor,
     after_closing,
     assembled_stress,
-    cam_clay_step,
-    contraction,
     deviator,
     deviatoric_stress,
     energy_of_cam_clay,
-    half_norm,
+    flowing_cam_clay_step,
+    growth_of_surface,
     hookimpl,
-    inertial_number,
     isotropic,
     log_volume_of_figure_1,
     longitudinal_wave_speed,
@@ -67,17 +59,6 @@ from materials import (
     shear_modulus,
     volumetric_strain_rate,
 )
-
-# Of the yield surface by the inertial number found against the one assumed.
-TOLERANCE = 1e-9
-MAXIMUM_ITERATIONS = 60
-ROUND_OFF = 1e-15
-# The same; more means that the return jumps.
-LARGEST_MISMATCH = 1e-6
-# Strain below which a return does not jump.
-SMALLEST_PART = 1e-4
-# exp of this is beyond any pressure, and its square still a number.
-LARGEST_EXPONENT = 300.0
 
 
 class Parameters(NamedTuple):
@@ -116,35 +97,6 @@ class State(NamedTuple):
     inertial_number: Annotated[float, StateVariable("1", "plastic inertial number I of the last step")]
 
 
-class Increment(NamedTuple):
-    """A step in contact, before I is known."""
-
-    start_pressure: float
-    start_deviator: SymmetricTensor
-    compression: float
-    shear: SymmetricTensor
-    size_at_rest: float
-    dt: float
-
-
-class Flow(NamedTuple):
-    """A step with the yield surface of an assumed inertial number.
-
-    size_at_rest  p_c0 at its end [Pa]
-    assumed       inertial number of the surface on which it ends: the one asked for, but for what is left of F there
-    found         inertial number of its plastic strain
-    slope, compression_slope   derivatives of found and of the plastic volume strain with respect to assumed, for a
-                  small step: where to try next
-    """
-
-    end: CamClayStep
-    size_at_rest: float
-    assumed: float
-    found: float
-    slope: float
-    compression_slope: float
-
-
 def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
     """At rest: the yield surface through the initial stress, times OCR; without stress, at the edge of contact."""
     p = max(pressure(stress), parameters.stress_free_pressure)
@@ -167,217 +119,39 @@ def update(
         return isotropic(0.0), State(state.preconsolidation_pressure, contact.gap, 0.0)
 
     smallest = parameters.stress_free_pressure
-    increment = Increment(
+    constants = constants_of(parameters)
+    step = flowing_cam_clay_step(
         max(pressure(stress), smallest),
         deviator(stress),
         contact.compression,
         contact.shear,
         state.preconsolidation_pressure,
+        state.inertial_number,
         dt,
+        constants,
     )
-    flow = flow_in_parts(increment, state.inertial_number, parameters)
-    end = flow.end
-    size_at_rest = max(flow.size_at_rest, 2.0 * smallest / growth_of_surface(flow.assumed, parameters))
-    if end.mean_pressure < smallest:
-        gap = parameters.swelling_index * math.log(smallest / end.mean_pressure)
+    smallest_size = 2.0 * smallest / growth_of_surface(step.surface_inertial_number, constants)
+    size_at_rest = max(step.size_at_rest, smallest_size)
+    if step.mean_pressure < smallest:
+        gap = parameters.swelling_index * math.log(smallest / step.mean_pressure)
         return isotropic(0.0), State(size_at_rest, gap, 0.0)
-    return assembled_stress(end.mean_pressure, end.deviator), State(size_at_rest, 0.0, flow.found)
+    return assembled_stress(step.mean_pressure, step.deviator), State(size_at_rest, 0.0, step.inertial_number)
 
 
 @pointwise
-def flow_in_parts(increment: Increment, guess: float, parameters: Parameters) -> Flow:
-    """The whole step or, where its return jumps, the last of as many equal parts as it takes not to."""
-    size = abs(increment.compression) + half_norm(increment.shear)
-    parts = 1
-    while True:
-        flow, is_consistent = led_through(increment, parts, guess, parameters)
-        if is_consistent or size <= SMALLEST_PART * parts:
-            return flow
-        parts *= 4
-
-
-@pointwise
-def led_through(increment: Increment, parts: int, guess: float, parameters: Parameters) -> tuple[Flow, bool]:
-    """The last of equal parts of a step, and whether each had the inertial number of its own plastic strain."""
-    start = CamClayStep(increment.start_pressure, increment.size_at_rest, increment.start_deviator, 0.0, 0.0)
-    flow, is_consistent = Flow(start, increment.size_at_rest, 0.0, guess, 0.0, 0.0), True
-    largest_mismatch = LARGEST_MISMATCH * sensitive_inertial_number(parameters)
-    compression, shear, dt = increment.compression / parts, scaled(increment.shear, 1.0 / parts), increment.dt / parts
-    for _ in range(parts):
-        part = Increment(flow.end.mean_pressure, flow.end.deviator, compression, shear, flow.size_at_rest, dt)
-        flow = consistent_flow(part, flow.found, parameters)
-        is_consistent = is_consistent and abs(flow.found - flow.assumed) <= largest_mismatch
-    return flow, is_consistent
-
-
-@pointwise
-def consistent_flow(increment: Increment, guess: float, parameters: Parameters) -> Flow:
-    """The step whose plastic strain has the inertial number of its yield surface."""
-    tolerance = TOLERANCE * sensitive_inertial_number(parameters)
-    flow = flow_at(guess, increment, parameters, 0.0)
-    slope = flow.slope
-    lower, upper = 0.0, math.inf
-    for _ in range(MAXIMUM_ITERATIONS):
-        excess = flow.found - flow.assumed
-        if abs(excess) <= tolerance:
-            return flow
-        if excess > 0.0:
-            lower = flow.assumed
-        else:
-            if flow.found == 0.0:
-                flow = onset_of_flow(flow.end, lower, increment, parameters)
-                if flow.assumed == 0.0:
-                    return flow
-                slope = flow.slope
-            upper = min(upper, flow.assumed)
-        trial = flow.assumed + (flow.found - flow.assumed) / (1.0 - slope)
-        if not lower < trial < upper:
-            trial = 0.5 * (lower + upper) if upper < math.inf else flow.found
-            slope = -math.inf
-        if is_exhausted(flow.assumed, trial, upper - lower, slope, tolerance):
-            return flow
-        expected = flow.end.plastic_compression + flow.compression_slope * (trial - flow.assumed)
-        new = flow_at(trial, increment, parameters, expected)
-        is_stalled = abs(new.found - new.assumed) > 0.5 * abs(excess) and upper < math.inf
-        # Without a slope the next trial leaves the bracket, which is then halved.
-        slope = -math.inf if is_stalled else slope_between(flow, new)
-        flow = new
-    return flow
-
-
-@pointwise
-def is_exhausted(last: float, trial: float, width: float, slope: float, tolerance: float) -> bool:
-    """Whether there is nothing between two trials, or a bracket that had to be halved is too narrow for a root."""
-    return abs(trial - last) <= ROUND_OFF * trial or (slope == -math.inf and width <= tolerance)
-
-
-@pointwise
-def slope_between(last: Flow, new: Flow) -> float:
-    """Slope of the inertial number found: of the secant or, from an elastic step, of the tangent."""
-    if last.found == 0.0 or new.found == 0.0 or new.assumed == last.assumed:
-        return new.slope
-    return min(0.0, (new.found - last.found) / (new.assumed - last.assumed))
-
-
-@pointwise
-def onset_of_flow(elastic: CamClayStep, lower: float, increment: Increment, parameters: Parameters) -> Flow:
-    """An elastic step with the inertial number whose yield surface it just reaches, at which flow sets in.
-
-    (1) is solved in the logarithm of p_c0, which is convex in I, by Newton's method from below; `lower` is an inertial
-    number at which the step is plastic, or 0.
-    """
-    p, s = elastic.mean_pressure, elastic.deviator
-    q_squared = 1.5 * contraction(s, s)
-    per_number = 1.0 / (parameters.dilation_inertial_number * plastic_index_of(parameters))
-    number = lower
-    for _ in range(MAXIMUM_ITERATIONS):
-        m = steady_stress_ratio(number, parameters)
-        reduced = q_squared / (m * m)
-        excess = math.log((reduced / p + p) / increment.size_at_rest) - number * per_number
-        if excess <= ROUND_OFF:
-            break
-        number += excess / (
-            2.0 * reduced / (reduced + p * p) * slope_of_stress_ratio(number, parameters) / m + per_number
-        )
-    if number == 0.0:
-        return Flow(elastic_end(elastic, increment.size_at_rest), increment.size_at_rest, 0.0, 0.0, 0.0, 0.0)
-    size = increment.size_at_rest * growth_of_surface(number, parameters)
-    return on_surface(elastic_end(elastic, size), size, number, increment, parameters)
-
-
-@pointwise
-def elastic_end(step: CamClayStep, size: float) -> CamClayStep:
-    """An elastic step with a yield surface of another size p_c."""
-    return CamClayStep(step.mean_pressure, size, step.deviator, 0.0, 0.0)
-
-
-@pointwise
-def flow_at(assumed: float, increment: Increment, parameters: Parameters, expected: float) -> Flow:
-    """The Cam Clay step with the surface of an inertial number; `expected` as in `cam_clay_step`."""
-    size = increment.size_at_rest * growth_of_surface(assumed, parameters)
-    end = cam_clay_step(
-        increment.start_pressure,
-        increment.start_deviator,
-        increment.compression,
-        increment.shear,
-        size,
-        CamClay(
-            steady_stress_ratio(assumed, parameters),
-            parameters.compression_index,
-            parameters.swelling_index,
-            parameters.poisson_ratio,
-        ),
-        expected,
+def constants_of(parameters: Parameters) -> FlowingCamClay:
+    """The constants of the return map."""
+    return FlowingCamClay(
+        parameters.critical_state_ratio,
+        parameters.dynamic_state_ratio,
+        parameters.friction_inertial_number,
+        parameters.dilation_inertial_number,
+        parameters.compression_index,
+        parameters.swelling_index,
+        parameters.poisson_ratio,
+        parameters.grain_density,
+        parameters.grain_diameter,
     )
-    if end.plastic_shear == 0.0 and end.plastic_compression == 0.0:
-        return Flow(end, increment.size_at_rest, assumed, 0.0, 0.0, 0.0)
-    return on_surface(end, size, assumed, increment, parameters)
-
-
-@pointwise
-def on_surface(end: CamClayStep, size: float, assumed: float, increment: Increment, parameters: Parameters) -> Flow:
-    """A step that ends on the yield surface, to the tolerance of its return; `size` is its p_c [Pa] at the start.
-
-    Moving the surface by dF changes the multiplier by dF/(K F_p^2 + 3 G F_q^2 + H), H from hardening.
-    """
-    p, p_c, s = end.mean_pressure, end.preconsolidation_pressure, end.deviator
-    m = steady_stress_ratio(assumed, parameters)
-    plastic_index = plastic_index_of(parameters)
-    reduced = 1.5 * contraction(s, s) / (m * m)
-
-    f = reduced - p * (p_c - p)
-    f_p, f_q = 2.0 * p - p_c, 2.0 * math.sqrt(reduced) / m
-    f_i = -2.0 * reduced / m * slope_of_stress_ratio(assumed, parameters)
-    f_i -= p * p_c / (parameters.dilation_inertial_number * plastic_index)
-    bulk_modulus = p / parameters.swelling_index
-    stiffness = bulk_modulus * f_p * f_p + p * p_c * f_p / plastic_index
-    stiffness += 3.0 * shear_modulus(bulk_modulus, parameters.poisson_ratio) * f_q * f_q
-    # Dry of the critical state softening can outweigh the rest.
-    per_number = f_i / stiffness if stiffness > 0.0 else 0.0
-
-    number_of_strain = inertial_number(1.0 / increment.dt, p, parameters.grain_diameter, parameters.grain_density)
-    return Flow(
-        end,
-        increment.size_at_rest * (p_c / size),
-        assumed - f / f_i,
-        end.plastic_shear * number_of_strain,
-        0.5 * math.sqrt(3.0) * f_q * per_number * number_of_strain,
-        f_p * per_number,
-    )
-
-
-@pointwise
-def steady_stress_ratio(number: float, parameters: Parameters) -> float:
-    """M(I) = M_csl M_I (Eq. 2)."""
-    slow = parameters.critical_state_ratio
-    return slow + (parameters.dynamic_state_ratio - slow) * number / (parameters.friction_inertial_number + number)
-
-
-@pointwise
-def slope_of_stress_ratio(number: float, parameters: Parameters) -> float:
-    """dM/dI."""
-    constant = parameters.friction_inertial_number
-    distance = constant + number
-    return (parameters.dynamic_state_ratio - parameters.critical_state_ratio) * constant / (distance * distance)
-
-
-@pointwise
-def plastic_index_of(parameters: Parameters) -> float:
-    """The slope of plastic compression, lambda - kappa."""
-    return parameters.compression_index - parameters.swelling_index
-
-
-@pointwise
-def growth_of_surface(number: float, parameters: Parameters) -> float:
-    """p_c/p_c0 (Eq. 7)."""
-    exponent = number / (parameters.dilation_inertial_number * plastic_index_of(parameters))
-    return math.exp(min(exponent, LARGEST_EXPONENT))
-
-
-@pointwise
-def sensitive_inertial_number(parameters: Parameters) -> float:
-    """The inertial number over which the surface changes by about its own size."""
-    return min(parameters.dilation_inertial_number * plastic_index_of(parameters), parameters.friction_inertial_number)
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

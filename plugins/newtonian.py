@@ -10,6 +10,7 @@ that is to carry suction, as between moving walls, starts under a pressure that 
 Step limit. `sound_speed` covers waves alone. An explicit step is also bound by `viscosity`, to about 3/8 rho h^2/eta on
 cells of h; where that is the smaller one, set the scene's `time.step`.
 
+Source: Batchelor (1967), An Introduction to Fluid Dynamics, section 3.3, without volume viscosity; p is linear in rho.
 Conventions: tensors tension-positive, p compression-positive.
 Valid for speeds well below sqrt(K/rho_0): the density changes by (v/c)^2. A fluid does not rest before it is level.
 """

@@ -1,5 +1,12 @@
 """DEM decks, their runner and the command: one description, clear failures, nothing made twice."""
 
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
 import pytest
 from typer.testing import CliRunner
 
@@ -10,6 +17,8 @@ from validation.dem.collapse import floor_of
 from validation.dem.packing import Packing, cut
 from validation.dem.programs import Program, failure, run_program
 from validation.dem.runs import Run, inputs_hash, runs_of
+from validation.dem_report.reference_set import REFERENCE
+from validation.grains.observation import read_observation
 
 
 def test_both_codes_are_listed():
@@ -67,3 +76,68 @@ def test_cut_keeps_the_volume_below_the_plane():
     random = np.random.default_rng(1)
     many = Packing(random.uniform(0.0, 1.0, (40000, 3)), random.uniform(0.006, 0.009, 40000))
     assert cut(many, 0.25).volume / many.volume == pytest.approx(0.25, abs=0.01)
+
+
+# The command itself with `sh` in the place of LIGGGHTS: it starts a process of its own and takes longer than the test.
+WITH_A_STAND_IN = """
+import sys
+from grainlaw.cli import main
+from validation.dem import programs, runs
+
+stand_in = programs.Program("LIGGGHTS", "sh", "dash", ("-c", "sleep 300 & echo $$ $! > pids; wait"), "")
+runs.LIGGGHTS = runs.PROGRAMS["liggghts"] = stand_in
+sys.argv = ["grainlaw", "dem", "run", "compression", "--out", sys.argv[1]]
+main()
+"""
+
+
+def is_alive(pid: int) -> bool:
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != "Z"
+
+
+def waited_for(condition, seconds: float = 60.0):
+    end = time.monotonic() + seconds
+    while not (found := condition()) and time.monotonic() < end:
+        time.sleep(0.05)
+    return found
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_the_code_too_and_leaves_the_batch_resumable(tmp_path, number):
+    def started() -> list[int]:
+        return [int(text) for path in tmp_path.glob("*/*/pids") for text in path.read_text().split()]
+
+    for _ in range(2):
+        command = subprocess.Popen(
+            [sys.executable, "-c", WITH_A_STAND_IN, str(tmp_path)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        pids = waited_for(started)
+        assert len(pids) == 2
+        assert all(map(is_alive, pids))
+        os.kill(command.pid, number)
+        output, errors = command.communicate(timeout=30)
+        assert command.returncode == 1
+        assert output == ""
+        assert errors == (
+            f"error: stopped by {number.name}; 0 of 2 runs are finished in {tmp_path}, "
+            "the same command goes on with the others\n"
+        )
+        assert waited_for(lambda ended=pids: not any(map(is_alive, ended)), 10.0)
+        assert not list(tmp_path.glob("**/run.json"))
+        for path in tmp_path.glob("*/*/pids"):
+            path.unlink()
+
+
+def test_reference_set_is_small_and_shows_stress_of_one_packing_by_each_code():
+    paths = sorted((REFERENCE / "collapse").iterdir())
+    shown = [path.stem.rpartition("_")[0] for path in paths if "stress_zz" in read_observation(path).snapshots]
+    assert len(set(shown)) == len(shown)
+    assert {name.partition("_")[0] for name in shown} == {path.stem.partition("_")[0] for path in paths}
+    assert sum(path.stat().st_size for path in REFERENCE.rglob("*") if path.is_file()) < 6.5e6

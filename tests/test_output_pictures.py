@@ -1,13 +1,17 @@
 """The pictures: which frames they choose, and that bodies look solid and stay in their outline."""
 
+from contextlib import contextmanager
+from itertools import combinations
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.image import imread
+from matplotlib.text import Text
 from synthetic_run import COLUMN_HEIGHT, COLUMN_WIDTH, SPACING, frame, write_run
 
 from materials import InputError
-from mpm_core.output.picture_style import color_scale, field_label, scalar_values
+from mpm_core.output.picture_style import color_scale, field_label, paper_picture, scalar_values
 from mpm_core.output.pictures import draw_frame, draw_history, write_run_pictures
 from mpm_core.output.point_image import ColorScale, draw_points, point_spacing
 from mpm_core.output.run_folder import RunFolder
@@ -80,6 +84,30 @@ def test_several_runs_share_a_picture_with_a_row_each(tmp_path):
     draw_snapshots(runs, tmp_path / "two.png")
     draw_history(runs, tmp_path / "history.png")
     assert imread(tmp_path / "two.png").shape[0] > 1.3 * imread(tmp_path / "one.png").shape[0]
+
+
+def test_labels_of_a_tall_picture_do_not_overlap_nor_leave_it(tmp_path, monkeypatch):
+    pictures = []
+
+    @contextmanager
+    def kept_picture(path, height, layout):
+        with paper_picture(path, height, layout) as figure:
+            yield figure
+        pictures.append(figure)
+
+    monkeypatch.setattr("mpm_core.output.snapshots.paper_picture", kept_picture)
+    names = [f"a_long_name_of_a_law_{count}" for count in range(6)]
+    draw_snapshots([(name, RunFolder(write_run(tmp_path / name))) for name in names], tmp_path / "six.png")
+    (figure,) = pictures
+    figure.draw_without_rendering()
+    texts = {text.get_window_extent(): text.get_text() for text in figure.findobj(Text) if text.get_visible()}
+    labels = [box for box, text in texts.items() if any(name in text for name in names)]
+    assert len(labels) == len(names)
+    shown = [*labels, *(box for box, text in texts.items() if "[m]" in text and box not in labels)]
+    assert [(texts[a], texts[b]) for a, b in combinations(shown, 2) if a.overlaps(b)] == []
+    for box in shown:
+        assert 0.0 <= box.x0 < box.x1 <= figure.bbox.x1, texts[box]
+        assert 0.0 <= box.y0 < box.y1 <= figure.bbox.y1, texts[box]
 
 
 def test_a_field_that_the_run_did_not_write_is_refused(tmp_path):

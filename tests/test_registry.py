@@ -62,7 +62,7 @@ FAULTS = {
     "bad unit": ({"parameter": 'Annotated[float, Parameter("kPa", "stiffness E")]'}, "declares the unit 'kPa'"),
     "no doc": ({"parameter": 'Annotated[float, Parameter("Pa", " ")]'}, "'stiffness' declares no doc"),
     "no declaration": ({"parameter": "float"}, "'stiffness' is not declared"),
-    "bad interval": ({"parameter": 'Annotated[float, Parameter("Pa", "E", "0 to 1")]'}, "bounds '0 to 1'"),
+    "bad interval": ({"parameter": 'Annotated[float, Parameter("Pa", "E", "0 to 1")]'}, "'stiffness': bounds '0 to 1'"),
     "state without unit": ({"state": 'Annotated[float, StateVariable("", "damage d")]'}, "'damage' declares no unit"),
     "state without doc": ({"state": 'Annotated[float, StateVariable("1", "")]'}, "'damage' declares no doc"),
     "no summary": ({"summary": ""}, "no summary"),
@@ -75,11 +75,12 @@ FAULTS = {
         {"extra": f", hook_version={OLDEST_HOOK_VERSION - 1}"},
         f"written for hook version {OLDEST_HOOK_VERSION - 1}; this grainlaw understands 1 to {HOOK_VERSION}: the law",
     ),
+    "hook version in words": ({"extra": ', hook_version="two"'}, "hook_version = 'two' is not a whole number"),
     "viscosity before its hook version": (
         {"extra": ", viscosity=sound_speed"},
         "viscosity belongs to hook version 2; the law says hook_version=1",
     ),
-    "set out of bounds": ({"value": "-1.0"}, "stiffness is outside (0, inf)"),
+    "set out of bounds": ({"value": "-1.0"}, "stiffness = -1.0 is outside (0, inf)"),
     "NaN at its own values": (
         {"body": 'return scaled(stress, float("nan")), state'},
         "gives a value that is not finite",

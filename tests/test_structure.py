@@ -72,6 +72,15 @@ def test_every_built_in_law_has_its_entry_point():
     assert {f"plugins.{name}" for name in files} <= declared
 
 
+@pytest.mark.parametrize("path", sorted((ROOT / "plugins").glob("[!_]*.py")), ids=lambda path: path.stem)
+def test_law_begins_with_equations_source_conventions_and_range(path):
+    header = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+    assert any(line.startswith("    ") and "=" in line for line in header.splitlines())
+    assert "\nSource: " in header
+    assert "\nConventions" in header
+    assert "\nValid f" in header or "range of validity: as" in header
+
+
 @pytest.mark.parametrize("arguments", [["--help"], ["materials"], ["materials", "mu_i_lc", "--json"]])
 def test_listing_laws_imports_no_heavy_library(arguments):
     program = f"""

@@ -91,5 +91,5 @@ def test_the_page_is_self_contained_and_names_what_failed(tmp_path):
     write_report(tmp_path, [verdict([OUTSIDE], figures=[figure], convergence=[orders])])
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert page.count('src="data:image/png;base64,') == 2
-    assert "http" not in page
+    assert "://" not in page
     assert "speed: error 0.002, band 0.001" in page

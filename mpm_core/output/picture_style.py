@@ -30,6 +30,8 @@ def paper_picture(path: Path, height: float, layout: Literal["compressed", "cons
     with rc_context(_STYLE):
         figure = Figure(figsize=(PAPER_WIDTH, height), layout=layout)
         yield figure
+        # The ticks follow from the size of the axes that the first layout gives: the second one leaves room for them.
+        figure.draw_without_rendering()
         with atomic.replacing(path) as partial:
             figure.savefig(partial, dpi=_DOTS_PER_INCH)
 

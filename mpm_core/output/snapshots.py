@@ -69,9 +69,11 @@ def draw_snapshots(
         for axes_row, (label, row) in zip(grid, rows, strict=True):
             for axes, snapshot in zip(axes_row, row, strict=True):
                 _draw_snapshot(axes, snapshot, field, scale)
-            axes_row[0].set_ylabel(f"{label}\n$y$ [m]")
+            axes_row[0].set_title(label, loc="left")
+            axes_row[0].set_ylabel("$y$ [m]")
         for axes, target in zip(grid[0], NORMALIZED_RUNOUTS, strict=True):
-            axes.set_title(rf"$\bar{{w}} \approx {target:.1f}$")
+            # The empty line is that of the row's label.
+            axes.set_title(rf"$\bar{{w}} \approx {target:.1f}$" + "\n ")
         for axes in grid[-1]:
             axes.set_xlabel("$x$ [m]")
         grid[0, 0].set(xlim=box[:2], ylim=box[2:])
@@ -97,4 +99,4 @@ def _height(rows: int, box: tuple[float, float, float, float]) -> float:
     """Height of the figure [inch] in which each row is as high as its equal axes need."""
     axes_width = PAPER_WIDTH / (len(NORMALIZED_RUNOUTS) + 0.8)
     axes_height = axes_width * (box[3] - box[2]) / (box[1] - box[0])
-    return rows * (axes_height + 0.1) + 0.7
+    return rows * (axes_height + 0.35) + 0.5

@@ -1,8 +1,10 @@
 """Start LIGGGHTS and YADE: time limit, log, and their failures as one clear line."""
 
+import os
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import time
 from collections.abc import Callable
@@ -54,9 +56,10 @@ KNOWN_FAILURES = (
 def installed_version(program: Program) -> str:
     """The version a code prints of itself, 'unknown' if it prints none; raises InputError if it is missing."""
     executable = program.command("")[0]
-    flag = "--version" if program is YADE else "-help"
+    # LIGGGHTS would leave its log in the working directory.
+    flags = ["--version"] if program is YADE else ["-log", "none", "-help"]
     answer = subprocess.run(
-        [executable, flag], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60, check=False
+        [executable, *flags], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60, check=False
     )
     text = answer.stdout + answer.stderr
     found = re.search(program.version_pattern, text) or re.search(r"[Vv]ersion:?\s+(\S+)", text)
@@ -76,15 +79,22 @@ def run_program(
 ) -> Cost:
     """Run `deck` in `folder` with its output in `log.txt`; return what it cost.
 
-    `report` is given the last line of the log now and then. Raises SimulationError with the cause if the code fails or
-    takes longer than `time_limit` [s], InputError if it is not installed.
+    `report` is given the last line of the log now and then; whatever it raises ends the code and all that it started.
+    Raises SimulationError with the cause if the code fails or takes longer than `time_limit` [s], InputError if it is
+    not installed.
     """
     command = program.command(deck)
     log = folder / "log.txt"
     start, used = time.monotonic(), _processor_time()
     with log.open("wb") as output:
+        # A session of its own: signals of the terminal reach it through this process only, and it ends as a whole.
         process = subprocess.Popen(
-            command, cwd=folder, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT
+            command,
+            cwd=folder,
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
         )
         try:
             while process.poll() is None:
@@ -94,7 +104,7 @@ def run_program(
                 report(_last_line(log))
         finally:
             if process.poll() is None:
-                process.kill()
+                os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
     text = log.read_text(encoding="utf-8", errors="replace")
     cause = failure(text)

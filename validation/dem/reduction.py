@@ -3,13 +3,14 @@
 import csv
 import io
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from materials import InputError
 from mpm_core.output.atomic import write_text
 from validation.dem.runs import RECORD
-from validation.grains.observation import write_observation
+from validation.grains.observation import Observation, write_observation
 from validation.grains.observe import observe_folder
 
 COLLAPSES, PROVENANCE = "collapse", "provenance.json"
@@ -34,7 +35,8 @@ def reduce_runs(folder: Path, into: Path) -> list[Path]:
     for run, record in runs:
         if record["kind"] == "collapse":
             path = into / COLLAPSES / f"{record['case']}_{record['code']}_s{record['seed']}.h5"
-            write_observation(path, observe_folder(run))
+            observation = observe_folder(run)
+            write_observation(path, observation if _shows_stress(record) else without_stress(observation))
             written.append(path)
     cells = {kind: [(run, record) for run, record in runs if record["kind"] == kind] for kind in ROWS}
     for kind, found in cells.items():
@@ -45,6 +47,17 @@ def reduce_runs(folder: Path, into: Path) -> list[Path]:
     if any(cells.values()):
         written.append(_write_provenance(into, [entry for found in cells.values() for entry in found]))
     return written
+
+
+def without_stress(observation: Observation) -> Observation:
+    """The observation without its stress fields, which are half of its file."""
+    kept = {name: field for name, field in observation.snapshots.items() if not name.startswith("stress")}
+    return replace(observation, snapshots=kept)
+
+
+def _shows_stress(record: dict[str, Any]) -> bool:
+    """Whether a run keeps its stress fields: the first packing of a case in each code does, for all of them."""
+    return bool(record["seed"] == min(record["description"][f"{record['code']}_seeds"], default=record["seed"]))
 
 
 def _write_provenance(into: Path, cells: list[tuple[Path, dict[str, Any]]]) -> Path:
