@@ -13,6 +13,7 @@ from mpm_core.body import Body
 from mpm_core.body_force import BodyForce, scatter_body_force
 from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, join_periodic
 from mpm_core.columns import LXX, LYY, X, Y
+from mpm_core.contact import Contact
 from mpm_core.elastic_energy import elastic_energy
 from mpm_core.fields import chosen_fields
 from mpm_core.grid import Grid, Window
@@ -147,7 +148,7 @@ class Simulation:
             join_periodic(grid.nodes, grid, axis)
         momentum.update_velocities(grid, self.reach, self.scene.gravity, kick)
         for wall in self.walls:
-            taken = hold_at_wall(grid, wall, self.window)
+            taken = hold_at_wall(grid, wall, self.window, self.contact.gaps(wall), dt)
             self.ledger.wall_work += taken.work
             self.ledger.wall_friction += taken.friction
         hold_nodes(grid, self.held_nodes)
@@ -205,6 +206,7 @@ class Simulation:
         """Find the nodes that the points can reach until the next sort, and leave zeros everywhere else."""
         momentum.clear(self.grid, self.reach)
         self.reach = reach_of(self.bodies, self.grid, self.basis, self.periodic_axes)
+        self.contact = Contact(self.walls, self.bodies, self.grid, self.basis, self.periodic_axes)
 
     def _take_reports(self, dt: float) -> None:
         reports = [step_report(body.transfer_reports, body.stress_reports) for body in self.bodies]
