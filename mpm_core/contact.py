@@ -1,16 +1,18 @@
 """The gap between a friction wall and the material that comes down on it.
 
-A friction wall is unilateral, and contact begins when the edge of the material is at the wall, not when the shape
-function of the wall row first reaches a point, which is up to a cell and a half before. The gap of a node on the wall is
-that of the lowest material in its support,
+A friction wall is unilateral. Contact begins when the edge of the material is at the wall, not when the shape function
+of the wall row first reaches a point, up to a cell and a half before. The gap of a node on the wall is that of the
+nearest material in its support,
 
     g_i = min over the points p with w_i(x_p) > 0 of max(0, d_p - s_p/2),   s_p = sqrt(min(V_p, V_0)),
 
 with the distance d_p of a point from the wall and its size s_p, the side of a square of its volume: a point of a full
-cell of 2 x 2 points that touches a wall is a quarter of a cell away. An opened point is no larger than at the start; what
-it has gained is void. The node may approach the wall by no more than g_i in a step (`boundary`). A minimum does not
-depend on the order of points, and which points can be near a wall before the next sort is recomputed from where they
-are, so nothing of it needs to be kept in a checkpoint.
+cell of 2 x 2 points that touches a wall is a quarter of a cell away. An opened point is no larger than at the start:
+what it gained is void. A point that is closer than half of its size touches, no more. The node may approach the wall by
+no more than g_i in a step (`boundary`).
+
+A minimum does not depend on the order of points, and which points can come near a wall before the next sort is found
+again from where they are, so that a checkpoint need not hold any of it.
 """
 
 from collections.abc import Sequence

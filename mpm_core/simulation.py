@@ -113,6 +113,7 @@ class Simulation:
         self.steps = 0
         self.drift = math.inf
         self.reach = nothing_in_reach(self.grid)
+        self.contact = Contact((), (), self.grid, self.basis, self.periodic_axes)
         corners = [body.corners() for body in self.bodies]
         lower, upper = np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]
         self.window = self._window_of((lower[0], lower[1]), (upper[0], upper[1]))
