@@ -116,14 +116,14 @@ def test_the_gap_of_a_node_is_that_of_the_lowest_point_in_its_support():
     assert gaps()[4] == 0.0
 
 
-def block_on_a_plane(angle, friction):
+def block_on_a_plane(angle, friction, bulk_modulus=1e6):
     """A flat stiff block on a plane of this angle, at rest and without shear stress at the start."""
     angle = math.radians(angle)
     changes = {
         "gravity": [G * math.sin(angle), -G * math.cos(angle)],
         "grid": {"cell_size": 0.05, "upper": [1.2, 0.4]},
         "boundary.bottom": {"kind": "friction", "coefficient": friction},
-        "material.linear_elastic.bulk_modulus": 1e6,
+        "material.linear_elastic.bulk_modulus": bulk_modulus,
         "body.0.shape": {"kind": "rectangle", "lower": [0.2, 0.0], "upper": [0.6, 0.1]},
         "body.0.initial_stress": {"kind": "geostatic", "horizontal_ratio": 0.0, "out_of_plane_ratio": 0.2},
     }
