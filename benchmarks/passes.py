@@ -20,6 +20,7 @@ from benchmarks.roofline import Roofline
 from mpm_core import momentum
 from mpm_core import simulation as stepping
 from mpm_core.body import Body
+from mpm_core.contact import Contact
 from mpm_core.simulation import Simulation
 
 # Columns of a point that a pass reads and writes; of the stress pass without the law's state.
@@ -88,6 +89,7 @@ def _clocks(simulation: Simulation) -> "Iterator[dict[str, float]]":
         (momentum, "update_velocities", "grid"),
         (momentum, "average_surroundings", "grid"),
         (stepping, "hold_at_wall", "grid"),
+        (Contact, "gaps", "grid"),
     ]
     for body in simulation.bodies:
         places += [

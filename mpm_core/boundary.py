@@ -61,8 +61,10 @@ class TakenByWall(NamedTuple):
     friction: float
 
 
-def hold_at_wall(grid: Grid, wall: Wall, window: Window) -> TakenByWall:
+def hold_at_wall(grid: Grid, wall: Wall, window: Window, gaps: NDArray[np.float64], dt: float) -> TakenByWall:
     """Apply a wall to the new velocities of its row of nodes. Returns the energies that the wall takes.
+
+    A node of a friction wall comes no closer in a step of dt [s] than its gap [m] (`contact`).
 
     Energy is counted as impulse times the mean of old and new velocity, which is zero for what stays at rest; friction
     as the tangential impulse of a friction wall times the mean sliding velocity.
@@ -85,13 +87,16 @@ def hold_at_wall(grid: Grid, wall: Wall, window: Window) -> TakenByWall:
         int(wall.kind),
         wall.coefficient,
         wall.velocity,
+        gaps[first[other] : last[other] + 1] / dt,
     )
     return TakenByWall(float(work), float(friction))
 
 
 @njit(cache=True)
 @named(CORE_MARK)
-def _hold(nodes, start, along, count, axis, sign, kind, friction, wall_velocity):  # type: ignore[no-untyped-def]
+def _hold(  # type: ignore[no-untyped-def]
+    nodes, start, along, count, axis, sign, kind, friction, wall_velocity, allowed
+):
     taken, dissipated = 0.0, 0.0
     for k in range(count):
         node = start + k * along
@@ -101,15 +106,15 @@ def _hold(nodes, start, along, count, axis, sign, kind, friction, wall_velocity)
         free_normal, free_tangential = nodes[node + NEW_VX + axis], nodes[node + NEW_VY - axis]
         old_normal, old_tangential = nodes[node + OLD_VX + axis], nodes[node + OLD_VY - axis]
         normal, tangential = free_normal, free_tangential
-        approach = max(0.0, -sign * normal)
+        excess = max(0.0, -sign * normal - allowed[k])
         if kind == WallKind.NO_SLIP:
             normal, tangential = 0.0, wall_velocity
         elif kind == WallKind.FREE_SLIP:
             normal = 0.0
-        elif approach > 0.0:
-            normal = 0.0
+        elif excess > 0.0:
+            normal = 0.0 - sign * allowed[k]
             sliding = tangential - wall_velocity
-            tangential = wall_velocity + np.copysign(max(0.0, abs(sliding) - friction * approach), sliding)
+            tangential = wall_velocity + np.copysign(max(0.0, abs(sliding) - friction * excess), sliding)
         nodes[node + NEW_VX + axis] = normal
         nodes[node + NEW_VY - axis] = tangential
         taken += 0.5 * mass * (free_normal - normal) * (old_normal + normal)

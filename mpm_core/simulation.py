@@ -13,6 +13,7 @@ from mpm_core.body import Body
 from mpm_core.body_force import BodyForce, scatter_body_force
 from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, join_periodic
 from mpm_core.columns import LXX, LYY, X, Y
+from mpm_core.contact import Contact
 from mpm_core.elastic_energy import elastic_energy
 from mpm_core.fields import chosen_fields
 from mpm_core.grid import Grid, Window
@@ -112,6 +113,7 @@ class Simulation:
         self.steps = 0
         self.drift = math.inf
         self.reach = nothing_in_reach(self.grid)
+        self.contact = Contact((), (), self.grid, self.basis, self.periodic_axes)
         corners = [body.corners() for body in self.bodies]
         lower, upper = np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]
         self.window = self._window_of((lower[0], lower[1]), (upper[0], upper[1]))
@@ -150,7 +152,7 @@ class Simulation:
         if tied > 0.0:
             momentum.average_surroundings(grid, self.reach)
         for wall in self.walls:
-            taken = hold_at_wall(grid, wall, self.window)
+            taken = hold_at_wall(grid, wall, self.window, self.contact.gaps(wall), dt)
             self.ledger.wall_work += taken.work
             self.ledger.wall_friction += taken.friction
         hold_nodes(grid, self.held_nodes)
@@ -208,6 +210,7 @@ class Simulation:
         """Find the nodes that the points can reach until the next sort, and leave zeros everywhere else."""
         momentum.clear(self.grid, self.reach)
         self.reach = reach_of(self.bodies, self.grid, self.basis, self.periodic_axes)
+        self.contact = Contact(self.walls, self.bodies, self.grid, self.basis, self.periodic_axes)
 
     def _take_reports(self, dt: float) -> None:
         reports = [step_report(body.transfer_reports, body.stress_reports) for body in self.bodies]

@@ -9,6 +9,7 @@ KERNEL_FILES = (
     "basis",
     "boundary",
     "columns",
+    "contact",
     "elastic_energy",
     "fields",
     "grid",

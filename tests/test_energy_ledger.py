@@ -79,8 +79,9 @@ def test_a_block_that_bounces_under_gravity_exchanges_three_energies():
 
 
 def test_the_friction_of_a_sliding_block_is_that_of_coulomb():
+    """A rigid one; a softer one shakes, and its bottom slides less where it presses more (0.6 % at 1 MPa)."""
     angle, friction = 30.0, 0.3
-    case = block_on_a_plane(angle, friction)
+    case = block_on_a_plane(angle, friction, bulk_modulus=1e7)
     (body,) = case.bodies
     body.points[SXY] = -friction * body.points[SYY]
     case.ledger.initial_elastic = case.elastic_energy()

@@ -7,7 +7,8 @@ import pytest
 from scenes_for_tests import BLOCK, COLUMN, momentum, simulation
 
 from materials import InputError
-from mpm_core.columns import SXX, SYY, VX, VY, X, Y
+from mpm_core.columns import DENSITY, SXX, SXY, SYY, VX, VY, X, Y
+from mpm_core.contact import Contact
 from mpm_core.scene import FEWEST_PERIODIC_CELLS
 
 G = 9.81
@@ -36,14 +37,93 @@ def test_free_fall_is_exact():
     assert case.ledger.numerical_dissipation == pytest.approx(left_out, rel=1e-6)
 
 
-def block_on_a_plane(angle, friction):
+DIRECTIONS = {"bottom": (0.0, -G), "top": (0.0, G), "left": (-G, 0.0), "right": (G, 0.0)}
+
+
+def distances_from(side, case):
+    """Of the points from a side of the domain, in cells."""
+    axis = 0 if side in ("left", "right") else 1
+    place = case.grid.lower[axis] if side in ("left", "bottom") else case.grid.upper[axis]
+    return np.abs(case.bodies[0].points[X + axis] - place) / case.grid.cell_size
+
+
+@pytest.mark.parametrize("side", DIRECTIONS)
+@pytest.mark.parametrize("basis", ["quadratic", "cubic"])
+def test_a_block_that_is_lowered_on_a_friction_wall_touches_it(side, basis):
+    changes = {
+        "gravity": DIRECTIONS[side],
+        "transfer.basis": basis,
+        "boundary": {side: {"kind": "friction", "coefficient": 0.5}},
+        "material.linear_elastic.bulk_modulus": 1e6,
+    }
+    case = simulation(BLOCK, changes)
+    time_constant = 0.05
+    case.body_force = lambda body, time: -body.velocities / time_constant
+    advance(case, 0.3 / (G * time_constant) + 0.5)
+    # A quarter of a cell, less the strain of the lowest row.
+    assert distances_from(side, case).min() == pytest.approx(0.25, abs=2e-3)
+
+
+def test_a_friction_wall_is_not_felt_before_the_material_is_there():
+    case = simulation(BLOCK, {"gravity": [0.0, -G], "boundary.bottom": {"kind": "friction", "coefficient": 0.5}})
+    (body,) = case.bodies
+    start = body.points[Y].mean()
+    time = math.sqrt(2.0 * 0.2 / G)
+    while case.time < time:
+        case.step(min(1e-3, time - case.time))
+    assert start - body.points[Y].mean() == pytest.approx(0.2, rel=1e-10)
+    assert abs(case.ledger.wall_work) < 1e-9
+
+
+def test_a_layer_that_falls_across_periodic_sides_stays_flat():
+    changes = {
+        "gravity": [0.0, -G],
+        "boundary": {
+            "left": "periodic",
+            "right": "periodic",
+            "bottom": {"kind": "friction", "coefficient": 0.5},
+        },
+        "body.0.shape": {"kind": "rectangle", "lower": [0.0, 0.1], "upper": [1.0, 0.3]},
+        "body.0.velocity": [0.5, 0.0],
+    }
+    case = simulation(BLOCK, changes)
+    advance(case, 0.2)
+    rows = np.sort(case.bodies[0].points[Y]).reshape(4, 20)
+    np.testing.assert_allclose(rows, np.broadcast_to(rows.mean(axis=1, keepdims=True), rows.shape), rtol=1e-10)
+    assert rows[0, 0] < 0.03
+
+
+def test_the_gap_of_a_node_is_that_of_the_lowest_point_in_its_support():
+    case = simulation(BLOCK, {"boundary.bottom": {"kind": "friction", "coefficient": 0.5}})
+    (wall,) = (wall for wall in case.walls if wall.side == "bottom")
+    (body,) = case.bodies
+    body.points[Y] -= 0.15
+
+    def gaps():
+        return Contact(case.walls, case.bodies, case.grid, case.basis, ()).gaps(wall)
+
+    expected = np.full(case.grid.shape[0], np.inf)
+    # The block from 0.3 to 0.7 m; nodes lie 0.1 m apart and begin at -0.2 m.
+    expected[4:11] = 0.05
+    np.testing.assert_allclose(gaps(), expected, rtol=1e-12)
+    body.points[:] = body.points[:, np.random.default_rng(1).permutation(body.count)]
+    np.testing.assert_allclose(gaps(), expected, rtol=1e-12)
+    body.points[DENSITY] = 500.0
+    np.testing.assert_allclose(gaps(), expected, rtol=1e-12, err_msg="what an opened point gained is void")
+    body.points[DENSITY] = 4000.0
+    np.testing.assert_allclose(gaps(), expected + 0.0125, rtol=1e-12)
+    body.points[Y, np.argmin(body.points[X])] = 0.01
+    assert gaps()[4] == 0.0
+
+
+def block_on_a_plane(angle, friction, bulk_modulus=1e6):
     """A flat stiff block on a plane of this angle, at rest and without shear stress at the start."""
     angle = math.radians(angle)
     changes = {
         "gravity": [G * math.sin(angle), -G * math.cos(angle)],
         "grid": {"cell_size": 0.05, "upper": [1.2, 0.4]},
         "boundary.bottom": {"kind": "friction", "coefficient": friction},
-        "material.linear_elastic.bulk_modulus": 1e6,
+        "material.linear_elastic.bulk_modulus": bulk_modulus,
         "body.0.shape": {"kind": "rectangle", "lower": [0.2, 0.0], "upper": [0.6, 0.1]},
         "body.0.initial_stress": {"kind": "geostatic", "horizontal_ratio": 0.0, "out_of_plane_ratio": 0.2},
     }
@@ -63,12 +143,14 @@ def test_a_block_below_the_friction_angle_sticks():
 
 @pytest.mark.parametrize(("angle", "friction"), [(30.0, 0.3), (30.0, 0.0), (40.0, 0.6)])
 def test_a_block_above_the_friction_angle_slides_at_the_rate_of_coulomb(angle, friction):
+    """It starts with the shear stress of steady sliding; without, it sticks until a shear wave has brought that."""
     case = block_on_a_plane(angle, friction)
+    case.bodies[0].points[SXY] = -friction * case.bodies[0].points[SYY]
     start = case.bodies[0].points[X].mean()
     advance(case, 0.3)
     steep = math.radians(angle)
     expected = 0.5 * G * (math.sin(steep) - friction * math.cos(steep)) * 0.3**2
-    assert case.bodies[0].points[X].mean() - start == pytest.approx(expected, rel=0.02)
+    assert case.bodies[0].points[X].mean() - start == pytest.approx(expected, rel=0.01)
 
 
 def test_friction_brings_a_thrown_block_to_rest_after_the_distance_of_coulomb():

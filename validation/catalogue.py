@@ -25,6 +25,7 @@ SUITES: dict[str, tuple[str, ...]] = {
         "axis_aligned_solution",
         "generalised_vortex",
         "self_weight_column",
+        "contact_gap",
         "sliding_block",
         "two_discs",
         "poiseuille",
