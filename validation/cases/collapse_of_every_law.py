@@ -75,7 +75,7 @@ def nanoseconds_per_step(simulation: Simulation) -> float:
     """Processor time of a point and step [ns]; for comparison, nothing depends on it."""
     start = time.process_time()
     for _ in range(TIMED_STEPS):
-        simulation.step(simulation.stable_step())
+        simulation.step(simulation.adaptive_step())
     return (time.process_time() - start) / (TIMED_STEPS * simulation.bodies[0].count) * 1e9
 
 
