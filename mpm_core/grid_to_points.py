@@ -11,8 +11,9 @@ so that tau = 0 is APIC (Jiang et al. 2015), tau = infinity affine FLIP, and the
 step. The energy of a point's field is m/2 (v^2 + A:A D); for tau = infinity the transfers keep its sum, but for terms
 of the order of dt.
 
-The grid also returns to each point pressure, density and crowding of the material around it, which tie the volumes of
-points to one another, and points move a little slower or faster than the material where they crowd (`volumes`).
+In some steps the grid also returns to each point pressure, density and crowding of the material around it, which tie
+the volumes of points to one another; where the scene asks for it, points then also move down the gradient of crowding
+(`volumes`).
 """
 
 from collections.abc import Callable

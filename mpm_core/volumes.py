@@ -7,9 +7,11 @@ densities knowing. No force on the grid shows any of it. What is loose grains th
     eps = s (<p> - p)/E                   a compressive strain for a point with stress,
     eps = s ln(<rho>/rho) >= 0            and for a point without stress,
     eps += SQUEEZE gamma_dot dt <e>       for both, where points crowd (or are sparse inside the material),
-    u = -SPREAD gamma_dot sum w_i e_i (x_i - x_p)    a velocity by which points move down the gradient of crowding,
+    u = -SPREAD gamma_dot sum w_i e_i (x_i - x_p)    a velocity down the gradient of crowding, if the scene says so,
 
-    s = x/(1 + x),  x = EVENING dt/tau gamma_dot/(gamma_dot + QUIET_RATE),  E = rho c^2 (p + <p>)/(2 p).
+    s = x/(1 + x),  x = EVENING dt/tau gamma_dot/(gamma_dot + QUIET_RATE),  E = rho c^2 (p + <p>)/(2 p),
+
+in every fourth step, dt being the time of four.
 
 <.> is gathered from the nodes: the averages of p and of the density, weighted with volume, and the crowding
 
