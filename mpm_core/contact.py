@@ -44,18 +44,21 @@ class Contact:
         self.grid = grid
         self.basis = basis
         self.periodic_axes = periodic_axes
-        self.near = {wall: [self._near(wall, body) for body in bodies] for wall in walls}
+        self.near = {
+            wall: [self._near(wall, body) for body in bodies] for wall in walls if wall.kind is WallKind.FRICTION
+        }
+        self.unlimited = [np.full(length, np.inf) for length in grid.shape]
 
     def _near(self, wall: Wall, body: Body) -> NDArray[np.int64]:
-        if wall.kind is not WallKind.FRICTION:
-            return np.empty(0, np.int64)
         away = np.abs(body.points[(X, Y)[wall.axis]] - _place(wall, self.grid))
         return np.flatnonzero(away < (0.5 * self.basis.width + DRIFT) * self.grid.cell_size)
 
     def gaps(self, wall: Wall) -> NDArray[np.float64]:
-        """The gap [m] of each node along a wall; infinite where no point is in its support."""
+        """The gap [m] of each node along a wall; infinite where no point is in its support, or no gap is asked for."""
         grid, basis, other = self.grid, self.basis, 1 - wall.axis
-        gaps = np.full(grid.shape[other], np.inf)
+        if wall not in self.near:
+            return self.unlimited[other]
+        gaps = self.unlimited[other].copy()
         axes = (_place(wall, grid), grid.origin[other], grid.cell_size)
         for body, near in zip(self.bodies, self.near[wall], strict=True):
             if len(near) > 0:

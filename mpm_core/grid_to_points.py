@@ -232,7 +232,7 @@ def make_grid_to_points(basis: Basis, ties: bool, spreads: bool) -> Callable[...
     """
     gather_velocities = make_gather(basis, component=NEW_VX, with_gradients=True)
     gather_bulk = make_gather(basis, component=BULK, with_gradients=spreads)
-    room_for_stencils, find_stencils = make_find_stencils(basis, with_slopes=True)
+    room_for_stencils, find_stencils = make_find_stencils(basis, receive=True)
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{basis.name}_{ties:d}{spreads:d}_{CORE_MARK}")

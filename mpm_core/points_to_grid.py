@@ -171,7 +171,7 @@ def make_scatter(basis: Basis) -> Callable[..., Any]:
 def make_points_to_grid(basis: Basis) -> Callable[..., Any]:
     """Scatter mass, volume, pressure, momentum and internal force of the stripes of one parity to the grid."""
     scatter = make_scatter(basis)
-    room_for_stencils, find_stencils = make_find_stencils(basis, with_slopes=False)
+    room_for_stencils, find_stencils = make_find_stencils(basis, receive=False)
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{basis.name}_{CORE_MARK}")

@@ -21,10 +21,16 @@ class Stencils(NamedTuple):
 
     starts                number of the first node
     weights_x, weights_y  w
+
+    of points that receive:
+
     slopes_x, slopes_y    w (i - f)/(h moment) [1/m], of which the moving-least-squares gradient is made
-    x, y                  distance f from the first node, in cells
     moment_x, moment_y    second moments of the weights, in cells squared
-    per_moment_x, ...     their inverses
+
+    and of points that bring:
+
+    x, y                  distance f from the first node, in cells
+    per_moment_x, ...     inverses of the second moments
     """
 
     starts: Any
@@ -32,19 +38,22 @@ class Stencils(NamedTuple):
     weights_y: Any
     slopes_x: Any
     slopes_y: Any
-    x: Any
-    y: Any
     moment_x: Any
     moment_y: Any
+    x: Any
+    y: Any
     per_moment_x: Any
     per_moment_y: Any
 
 
 @cache
-def make_find_stencils(basis: Basis, with_slopes: bool) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Functions that make room for the stencils of a group, and fill it for the points from `first` to `last`."""
+def make_find_stencils(basis: Basis, receive: bool) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Functions that make room for the stencils of a group, and fill it for the points from `first` to `last`.
+
+    `receive` is whether the points receive from the grid or bring to it; what the other needs is left empty.
+    """
     width, stencil = basis.width, make_stencil(basis)
-    mark = f"{basis.name}_{with_slopes:d}_{CORE_MARK}"
+    mark = f"{basis.name}_{receive:d}_{CORE_MARK}"
 
     @register_jitable(forceinline=True)
     @named(mark)
@@ -86,15 +95,16 @@ def make_find_stencils(basis: Basis, with_slopes: bool) -> tuple[Callable[..., A
             for a in range(width):
                 put_quad(stencils.weights_x, a * GROUP + k, wx[a])
                 put_quad(stencils.weights_y, a * GROUP + k, wy[a])
-            if with_slopes:
+            if receive:
                 put_slopes(stencils.slopes_x, k, wx, fx, inverse_size * per_moment_x)
                 put_slopes(stencils.slopes_y, k, wy, fy, inverse_size * per_moment_y)
-            put_quad(stencils.x, k, fx)
-            put_quad(stencils.y, k, fy)
-            put_quad(stencils.moment_x, k, moment_x)
-            put_quad(stencils.moment_y, k, moment_y)
-            put_quad(stencils.per_moment_x, k, per_moment_x)
-            put_quad(stencils.per_moment_y, k, per_moment_y)
+                put_quad(stencils.moment_x, k, moment_x)
+                put_quad(stencils.moment_y, k, moment_y)
+            else:
+                put_quad(stencils.x, k, fx)
+                put_quad(stencils.y, k, fy)
+                put_quad(stencils.per_moment_x, k, per_moment_x)
+                put_quad(stencils.per_moment_y, k, per_moment_y)
 
     return room_for_stencils, find_stencils
 
