@@ -10,18 +10,23 @@ from materials import InputError, SymmetricTensor
 from materials.compilation import explained, pointwise_law
 from materials.law import Law
 from mpm_core.basis import Basis
-from mpm_core.columns import DENSITY, FIRST_STATE, NAMES, SXX, SXY, SYY, SZZ, VX, VY, X, Y, allocate
+from mpm_core.columns import AFFINE, DENSITY, FIRST_STATE, GRADIENT, NAMES, SXX, SXY, SYY, SZZ, VX, VY, X, Y, allocate
 from mpm_core.grid import Grid, Window
 from mpm_core.grid_to_points import BLOCK, make_grid_to_points
 from mpm_core.grid_to_points import REPORTS as TRANSFER_REPORTS
 from mpm_core.points_to_grid import make_points_to_grid
+from mpm_core.quads import LANES
 from mpm_core.sorting import balanced_chunks, sort_by_stencil
+from mpm_core.stress import MAX_SIGNAL_SPEED, make_stress_pass
 from mpm_core.stress import REPORTS as STRESS_REPORTS
-from mpm_core.stress import make_stress_pass
 
 
 class Body:
-    """Points as rows of `points`, shape (columns, n); `ids` gives each point's number in the order of generation."""
+    """Points as rows of `points`, shape (columns, n); `ids` gives each point's number in the order of generation.
+
+    The first `awake` points take part in steps, and `rows` are those of them; the rest sleeps (`sleeping`). While any
+    sleeps, `signal_speed_asleep` [m/s] is no less than that of each of them.
+    """
 
     def __init__(
         self,
@@ -36,15 +41,14 @@ class Body:
         self.law = law
         self.parameters = parameters
         self.points = points
-        self.rows = tuple(points)
         self.point_mass = point_mass
         self.initial_density = float(points[DENSITY, 0])
+        self.first_id = first_id
         self.ids = np.arange(first_id, first_id + points.shape[1])
         self.stripe_starts = np.zeros(1, np.int64)
         self.chunks = np.zeros(1, np.int64)
-        blocks = -(-points.shape[1] // BLOCK)
-        self.transfer_reports = np.zeros((blocks, TRANSFER_REPORTS))
-        self.stress_reports = np.zeros((blocks, STRESS_REPORTS))
+        self.signal_speed_asleep = 0.0
+        self.set_awake(points.shape[1])
         self._points_to_grid: Callable[..., Any]
         self._grid_to_points: Callable[..., Any]
         self._tying_grid_to_points: Callable[..., Any]
@@ -54,6 +58,19 @@ class Body:
     def count(self) -> int:
         """Number of points."""
         return self.points.shape[1]
+
+    def set_awake(self, awake: int) -> None:
+        """Let the first `awake` points take part in steps."""
+        self.awake = awake
+        self.rows = tuple(self.points[:, :awake])
+        blocks = -(-awake // BLOCK)
+        self.transfer_reports = np.zeros((blocks, TRANSFER_REPORTS))
+        self.stress_reports = np.zeros((blocks, STRESS_REPORTS))
+
+    @property
+    def sleeping_rows(self) -> tuple[NDArray[np.float64], ...]:
+        """The rows of `points`, of those that sleep."""
+        return tuple(self.points[:, self.awake :])
 
     @property
     def is_loose(self) -> bool:
@@ -90,32 +107,68 @@ class Body:
         return fastest + float(np.sqrt((self.velocities**2).sum(axis=0).max()))
 
     def corners(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Lower and upper corner of the points' bounding box [m]."""
-        x, y = self.points[X], self.points[Y]
+        """Lower and upper corner of the bounding box of the points that are awake [m]."""
+        x, y = self.rows[X], self.rows[Y]
         return (float(x.min()), float(y.min())), (float(x.max()), float(y.max()))
 
     def sort(self, grid: Grid, basis: Basis, window: Window, threads: int) -> None:
-        """Bring the points into the order of their stencils and cut them into stripes."""
-        order, self.stripe_starts = sort_by_stencil(self.points, grid.origin, grid.cell_size, basis.offset, window)
-        for column in self.points:
-            column[:] = column[order]
-        self.ids = self.ids[order]
+        """Bring the points that are awake into the order of their stencils and cut them into stripes."""
+        points = self.points[:, : self.awake]
+        order, self.stripe_starts = sort_by_stencil(points, grid.origin, grid.cell_size, basis.offset, window)
+        self._reorder(order)
         self.share_between(threads)
+
+    def divide(self, asleep: NDArray[np.bool_]) -> None:
+        """Put the points that are to sleep, of all, behind the others; the speed of those that fall asleep is zero.
+
+        Passes take `LANES` points at a time, so that a few more may have to stay awake.
+        """
+        fastest = float(self.stress_reports[:, MAX_SIGNAL_SPEED].max(initial=self.signal_speed_asleep))
+        self.signal_speed_asleep = fastest if asleep.any() else 0.0
+        for columns in (slice(VX, VY + 1), GRADIENT, AFFINE):
+            self.points[columns, asleep] = 0.0
+        first = int(np.argmax(asleep))
+        self._reorder(first + np.argsort(asleep[first:], kind="stable"), first)
+        awake = len(asleep) - int(np.count_nonzero(asleep))
+        self.set_awake(min(len(asleep), -(-awake // LANES) * LANES))
+
+    def _reorder(self, order: NDArray[np.int64], first: int = 0) -> None:
+        """Bring points from `first` on, as many as `order` names, into an order."""
+        places = slice(first, first + len(order))
+        for column in self.points:
+            column[places] = column[order]
+        self.ids[places] = self.ids[order]
 
     def share_between(self, threads: int) -> None:
         """Cut the stripes into one run per thread."""
         self.chunks = balanced_chunks(self.stripe_starts, threads)
 
     def to_grid(self, grid: Grid) -> None:
-        """Scatter mass, momentum and internal force."""
+        """Scatter mass, momentum and internal force of the points that are awake."""
+        self._scatter(self.rows, self.stripe_starts, self.chunks, grid.nodes, grid)
+
+    def sleepers_to_grid(self, nodes: NDArray[np.float64], grid: Grid) -> None:
+        """Scatter what the sleeping points bring to nodes of their own, in the order in which they lie."""
+        rows = self.sleeping_rows
+        # A single stripe, to one thread: nobody waits for it.
+        self._scatter(rows, np.array([0, len(rows[X])]), np.array([0, 1]), nodes, grid)
+
+    def _scatter(
+        self,
+        rows: tuple[NDArray[np.float64], ...],
+        stripe_starts: NDArray[np.int64],
+        chunks: NDArray[np.int64],
+        nodes: NDArray[np.float64],
+        grid: Grid,
+    ) -> None:
         for parity in (0, 1):
             self._points_to_grid(
-                self.rows,
+                rows,
                 self.point_mass,
-                self.stripe_starts,
-                self.chunks,
+                stripe_starts,
+                chunks,
                 parity,
-                grid.nodes,
+                nodes,
                 grid.shape[1],
                 grid.ghosts,
                 grid.origin,

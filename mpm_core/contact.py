@@ -62,8 +62,8 @@ class Contact:
         axes = (_place(wall, grid), grid.origin[other], grid.cell_size)
         for body, near in zip(self.bodies, self.near[wall], strict=True):
             if len(near) > 0:
-                away, along = body.rows[(X, Y)[wall.axis]], body.rows[(X, Y)[other]]
-                size = (body.point_mass, body.rows[DENSITY], body.initial_density)
+                away, along = body.points[(X, Y)[wall.axis]], body.points[(X, Y)[other]]
+                size = (body.point_mass, body.points[DENSITY], body.initial_density)
                 _narrow(near, away, along, *size, *axes, basis.offset, basis.width, gaps)
         if other in self.periodic_axes:
             copies = len(gaps) - grid.cells[other]

@@ -44,4 +44,4 @@ def elastic_energy(body: Body) -> float:
     if body.law.stored_energy is None:
         return math.nan
     kernel = _sum_over_points(pointwise_law(body.law))
-    return body.point_mass * float(explained(body.law, kernel, body.rows, tuple(body.parameters)))
+    return body.point_mass * float(explained(body.law, kernel, tuple(body.points), tuple(body.parameters)))

@@ -2,6 +2,7 @@
 
 import numpy as np
 from numba import njit, prange
+from numpy.typing import NDArray
 
 from materials.compilation import named
 from mpm_core.grid import (
@@ -27,9 +28,9 @@ from mpm_core.sources import CORE_MARK
 from mpm_core.volumes import crowding_of
 
 
-def clear(grid: Grid, reach: Reach) -> None:
-    """Zero the nodes in reach."""
-    _clear(grid.nodes, grid.shape[1], reach.first_rows, reach.last_rows)
+def clear(nodes: NDArray[np.float64], grid: Grid, reach: Reach) -> None:
+    """Zero the nodes in reach, of the grid or of another array like its nodes."""
+    _clear(nodes, grid.shape[1], reach.first_rows, reach.last_rows)
 
 
 def update_velocities(grid: Grid, reach: Reach, gravity: tuple[float, float], dt: float) -> None:

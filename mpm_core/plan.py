@@ -97,6 +97,8 @@ def _savings(simulation: Simulation) -> list[str]:
     found = [f"grid: {1.0 - simulation.reach.nodes / nodes:.0%} of the nodes are out of reach at the start"]
     if "shear_strain" not in simulation.fields:
         found.append("shear strain: not accumulated, as no frame holds it")
+    if simulation.scene.sleep.speed is not None:
+        found.append(f"sleep: points slower than {simulation.scene.sleep.speed:g} m/s, not counted in the wall time")
     return found
 
 

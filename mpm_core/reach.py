@@ -1,4 +1,4 @@
-"""Which nodes the points can reach until they are sorted again: for each column of nodes, a range of rows.
+"""Which nodes the points that are awake can reach until they are sorted again: a range of rows per column of nodes.
 
 Work on the grid follows these nodes, so that its cost does not depend on the domain, nor on the air above a pile. Nodes
 out of reach hold zeros.
@@ -6,7 +6,6 @@ out of reach hold zeros.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numba import njit
@@ -40,12 +39,17 @@ def nothing_in_reach(grid: Grid) -> Reach:
     return Reach(np.full(grid.shape[0], grid.shape[1]), np.full(grid.shape[0], -1))
 
 
-def reach_of(bodies: Sequence[Any], grid: Grid, basis: Basis, periodic_axes: Sequence[int]) -> Reach:
-    """The nodes that the points of all bodies reach until they have drifted; all of them along a periodic axis."""
+def reach_of(
+    groups: Sequence[Sequence[NDArray[np.float64]]], grid: Grid, basis: Basis, periodic_axes: Sequence[int]
+) -> Reach:
+    """The nodes that groups of points reach until they have drifted; all of them along a periodic axis.
+
+    A group is the rows of its points, as in `Body.points`.
+    """
     reach = nothing_in_reach(grid)
     first, last = reach.first_rows, reach.last_rows
-    for body in bodies:
-        _extend(body.points[X], body.points[Y], grid.origin, grid.cell_size, basis.offset, basis.width, first, last)
+    for rows in groups:
+        _extend(rows[X], rows[Y], grid.origin, grid.cell_size, basis.offset, basis.width, first, last)
     np.clip(first, 0, grid.shape[1], out=first)
     np.clip(last, -1, grid.shape[1] - 1, out=last)
     if 0 in periodic_axes:

@@ -95,6 +95,7 @@ class Recorder:
                 "wall_work": ledger.wall_work,
                 "wall_friction": ledger.wall_friction,
                 "numerical_dissipation": ledger.numerical_dissipation,
+                "points_asleep": sum(body.count - body.awake for body in self.simulation.bodies),
                 "step": self.simulation.steps,
                 "wall_time": wall_time,
             }

@@ -1,5 +1,6 @@
 """What the passes over the points report of a step, put together for a body."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -46,8 +47,14 @@ class StepReport(NamedTuple):
     increment: float
 
 
+# A body of which nothing is awake.
+_NOTHING = StepReport(math.inf, -math.inf, math.inf, -math.inf, *([0.0] * 7))
+
+
 def step_report(transfer: NDArray[np.float64], stress: NDArray[np.float64]) -> StepReport:
     """The report of a body from those of its blocks."""
+    if len(stress) == 0:
+        return _NOTHING
     return StepReport(*_combined(transfer, stress))
 
 

@@ -136,6 +136,21 @@ class TransferSection(Section):
     )
 
 
+class SleepSection(Section):
+    """Rest: where nothing moves, nothing is computed (`mpm_core.sleeping`)."""
+
+    speed: float | None = Field(
+        default=None,
+        gt=0,
+        description="points that moved slower than this over `window`, with all around them, sleep until something "
+        "moves them; a creeping point stays behind by this times the time asleep [m/s]; default: nothing sleeps",
+    )
+    window: float = Field(default=0.05, gt=0, description="how long a point has to rest before it sleeps [s]")
+    start: float = Field(
+        default=0.0, ge=0, description="when the first window begins; for flows that begin at rest [s]"
+    )
+
+
 class InitialStressSection(Section):
     """The stress of a body at the start."""
 
@@ -193,6 +208,7 @@ class Scene(Section):
     time: TimeSection
     boundary: BoundarySection = Field(default=BoundarySection())
     transfer: TransferSection = Field(default=TransferSection())
+    sleep: SleepSection = Field(default=SleepSection())
     material: dict[str, dict[str, Any]] = Field(
         min_length=1, description="[material.NAME]: the law's parameters, and `law` if NAME is not the law's own name"
     )

@@ -22,6 +22,7 @@ from mpm_core.initial import build_bodies
 from mpm_core.reach import nothing_in_reach, reach_of
 from mpm_core.reports import step_report
 from mpm_core.scene import Scene
+from mpm_core.sleeping import STEPS_PER_LOOK, Sleep
 from mpm_core.sorting import LONGEST_DRIFT
 from mpm_core.threads import use_threads
 from mpm_core.time_step import (
@@ -114,11 +115,11 @@ class Simulation:
         self.drift = math.inf
         self.reach = nothing_in_reach(self.grid)
         self.contact = Contact((), (), self.grid, self.basis, self.periodic_axes)
-        corners = [body.corners() for body in self.bodies]
-        lower, upper = np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]
-        self.window = self._window_of((lower[0], lower[1]), (upper[0], upper[1]))
+        self.window = Window(0, 0, 0, 0)
+        self._find_window()
         kinetic = sum(0.5 * body.point_mass * float((body.velocities**2).sum()) for body in self.bodies)
         self.ledger = Ledger(kinetic, kinetic, initial_elastic)
+        self.sleep = self._sleep()
         self.signal_bounds = [signal_bounds(body.law, body.parameters, body.initial_density) for body in self.bodies]
         self.measure_signals()
         first = self.scene.time.step or self.adaptive_step()
@@ -141,7 +142,7 @@ class Simulation:
         kick = 0.5 * (self.last_step + dt)
         tied = STEPS_PER_TIE * dt if self.steps % STEPS_PER_TIE == 0 else 0.0
         self._sort_if_drifted()
-        momentum.clear(grid, self.reach)
+        self._clear_nodes()
         for body in self.bodies:
             body.to_grid(grid)
             if self.body_force is not None:
@@ -156,6 +157,8 @@ class Simulation:
             self.ledger.wall_work += taken.work
             self.ledger.wall_friction += taken.friction
         hold_nodes(grid, self.held_nodes)
+        if self.sleep is not None:
+            self.sleep.hold(self.reach)
         for body in self.bodies:
             body.from_grid(grid, dt, self._memory(dt), ties=tied > 0.0)
         for body in self.bodies:
@@ -164,6 +167,8 @@ class Simulation:
         self.last_step = dt
         self.steps += 1
         self._take_reports(dt)
+        if self.sleep is not None:
+            self._let_sleep(self.sleep)
 
     def stable_step(self) -> float:
         """The largest stable step [s] at the present state: a cell over the fastest signal; infinite without any."""
@@ -197,19 +202,43 @@ class Simulation:
         transfer = self.scene.transfer
         return math.exp(-dt / transfer.time_constant) if transfer.scheme == "affine_flip" else 0.0
 
+    def _clear_nodes(self) -> None:
+        """Leave on the nodes only what sleeping points bring."""
+        if self.sleep is not None and self.sleep.has_sleepers:
+            self.sleep.lay_on_grid(self.reach)
+        else:
+            momentum.clear(self.grid.nodes, self.grid, self.reach)
+
     def _sort_if_drifted(self) -> None:
         if self.drift > LONGEST_DRIFT * self.grid.cell_size:
-            for body in self.bodies:
-                for axis in self.periodic_axes:
-                    body.wrap(axis, self.grid.lower[axis], self.grid.upper[axis] - self.grid.lower[axis])
-                body.sort(self.grid, self.basis, self.window, self.threads)
-            self.drift = 0.0
-            self.find_reach()
+            self._sort()
+
+    def _sort(self) -> None:
+        for body in self.bodies:
+            for axis in self.periodic_axes:
+                body.wrap(axis, self.grid.lower[axis], self.grid.upper[axis] - self.grid.lower[axis])
+            body.sort(self.grid, self.basis, self.window, self.threads)
+        self.drift = 0.0
+        self.find_reach()
+
+    def _sleep(self) -> Sleep | None:
+        settings = self.scene.sleep
+        return Sleep(settings, self.bodies, self.grid, self.basis) if settings.speed is not None else None
+
+    def _let_sleep(self, sleep: Sleep) -> None:
+        """Wake what something moves, and let fall asleep what rests."""
+        looks = self.steps % STEPS_PER_LOOK == 0 and sleep.has_sleepers
+        woke = looks and sleep.wake_up(self.reach)
+        fell = self.body_force is None and sleep.fall_asleep(self.time)
+        if woke or fell:
+            self._find_window()
+            self._sort()
+            sleep.bring_sleepers()
 
     def find_reach(self) -> None:
-        """Find the nodes that the points can reach until the next sort, and leave zeros everywhere else."""
-        momentum.clear(self.grid, self.reach)
-        self.reach = reach_of(self.bodies, self.grid, self.basis, self.periodic_axes)
+        """Find the nodes that what is awake can reach until the next sort, and leave zeros everywhere else."""
+        momentum.clear(self.grid.nodes, self.grid, self.reach)
+        self.reach = reach_of([body.rows for body in self.bodies], self.grid, self.basis, self.periodic_axes)
         self.contact = Contact(self.walls, self.bodies, self.grid, self.basis, self.periodic_axes)
 
     def _take_reports(self, dt: float) -> None:
@@ -220,16 +249,28 @@ class Simulation:
         lower = (min(report.lowest_x for report in reports), min(report.lowest_y for report in reports))
         upper = (max(report.highest_x for report in reports), max(report.highest_y for report in reports))
         self._refuse_lost_points(lower, upper)
-        self.window = self._window_of(lower, upper)
+        if any(body.awake > 0 for body in self.bodies):
+            self.window = self._window_of(lower, upper)
         self.drift += dt * max(report.fastest for report in reports)
         self.strain_rate = max(report.increment for report in reports) / dt
-        self.signal_speed = self._signal_speed([(report.signal_speed, report.fastest) for report in reports])
+        signals = [
+            (max(report.signal_speed, body.signal_speed_asleep), report.fastest)
+            for body, report in zip(self.bodies, reports, strict=True)
+        ]
+        self.signal_speed = self._signal_speed(signals)
         gravity_x, gravity_y = self.scene.gravity
         self.ledger.count(
             kinetic=sum(report.kinetic for report in reports),
             risen=-dt * sum(gravity_x * report.moved_x + gravity_y * report.moved_y for report in reports),
             worked=sum(report.internal_work for report in reports),
         )
+
+    def _find_window(self) -> None:
+        """Take the window from the points that are awake, if any are."""
+        corners = [body.corners() for body in self.bodies if body.awake > 0]
+        if corners:
+            lower, upper = np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]
+            self.window = self._window_of((lower[0], lower[1]), (upper[0], upper[1]))
 
     def _window_of(self, lower: tuple[float, float], upper: tuple[float, float]) -> Window:
         """The nodes in reach of points between two corners; all nodes along a periodic axis."""

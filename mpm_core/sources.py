@@ -20,6 +20,7 @@ KERNEL_FILES = (
     "quads",
     "reach",
     "reports",
+    "sleeping",
     "sorting",
     "stencils",
     "stress",

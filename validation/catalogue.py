@@ -61,7 +61,7 @@ SUITES: dict[str, tuple[str, ...]] = {
         "turned_scene",
     ),
     # What accuracy costs.
-    "speed": ("speed_error",),
+    "speed": ("sleeping", "speed_error"),
 }
 NAMES = tuple(name for suite in SUITES.values() for name in suite)
 

@@ -44,6 +44,13 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
             group.create_dataset("ids", data=body.ids)
             group.create_dataset("stripe_starts", data=body.stripe_starts)
             group.attrs.update(law=body.law.name, columns=", ".join(body.column_names))
+            group.attrs.update(awake=body.awake, signal_speed_asleep=body.signal_speed_asleep)
+        if simulation.sleep is not None:
+            sleep = file.create_group("sleep")
+            sleep.attrs["started"] = simulation.sleep.started
+            sleep.create_dataset("withheld", data=simulation.sleep.withheld, compression="gzip")
+            for number, places in enumerate(simulation.sleep.places):
+                sleep.create_dataset(f"places/{number}", data=places)
 
 
 def read_checkpoint(folder: Path, simulation: Simulation) -> Clock:
@@ -72,6 +79,14 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
         body.ids = group["ids"][:]
         body.stripe_starts = group["stripe_starts"][:]
         body.share_between(simulation.threads)
+        body.set_awake(int(group.attrs["awake"]))
+        body.signal_speed_asleep = float(group.attrs["signal_speed_asleep"])
+    if simulation.sleep is not None:
+        simulation.sleep.started = float(file["sleep"].attrs["started"])
+        for number, places in enumerate(simulation.sleep.places):
+            places[:] = file[f"sleep/places/{number}"][:]
+        simulation.sleep.withheld = file["sleep/withheld"][:]
+        simulation.sleep.bring_sleepers()
     simulation.time = float(file.attrs["time"])
     simulation.steps = int(file.attrs["steps"])
     simulation.drift = float(file.attrs["drift"])

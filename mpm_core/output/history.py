@@ -48,6 +48,7 @@ HISTORY_COLUMNS = (
     HistoryColumn(
         "numerical_dissipation", "J/m", "energy that transfers and time integration took per width since the start"
     ),
+    HistoryColumn("points_asleep", "1", "number of points that sleep (`sleep` of the scene)", whole_number=True),
     HistoryColumn("step", "1", "number of the step", whole_number=True),
     HistoryColumn("wall_time", "s", "wall-clock time since the start of the run"),
 )

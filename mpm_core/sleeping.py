@@ -1,0 +1,191 @@
+"""Material at rest sleeps: it costs nothing until something moves it.
+
+Falling asleep. A point sleeps when, over a window of time, no point in `RING` nodes around it was displaced by more
+than `speed` times the window: slower creep is what a scene that asks for sleep calls rest. What sleeping points bring
+to the grid, mass, volume and the force of their stress, is kept on a grid of its own, from which each step starts in
+place of zeros. They bring no momentum, and their state does not change.
+
+Asleep. What sleeps is rigid: nodes with sleeping mass are held, after the walls have done their part. The momentum that
+is withheld from a node in each step is summed up over the window.
+
+Waking. Where that sum exceeds the momentum of a full cell at `WAKING` times `speed`, the points in `RING` nodes around
+wake; every `STEPS_PER_LOOK` steps somebody looks, in which time no wave gets out of the ring (with steps of the usual
+safety).
+
+Error. A point that would have gone on creeping as it did stays behind by `speed` times the time that it slept, and the
+force that holds a node is, in the mean of a window, less than that which gives a full cell an acceleration of
+WAKING speed/window. Waves of stress stop where they fall asleep; the kinetic energy that is given up counts as
+numerical dissipation.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+from materials.compilation import named
+from mpm_core.basis import Basis
+from mpm_core.body import Body
+from mpm_core.columns import X, Y
+from mpm_core.grid import COMPONENTS, MASS, NEW_VX, NEW_VY, Grid
+from mpm_core.momentum import clear
+from mpm_core.quads import LANES
+from mpm_core.reach import Reach, nothing_in_reach, reach_of
+from mpm_core.scene import SleepSection
+from mpm_core.sources import CORE_MARK
+
+# The momentum withheld from a node that wakes it, over that of a full cell at the speed below which points fall asleep.
+WAKING = 40.0
+# Nodes around what moves that are awake, and steps between two looks at what is withheld.
+RING = 3
+STEPS_PER_LOOK = 8
+
+
+class Sleep:
+    """Which points sleep, and what they bring to the grid; `started` [s] is when the present window began.
+
+    places    positions of each body's points at that time, in the order of generation, shape (2, n) [m]
+    withheld  momentum withheld from each node since then, shape (nodes along x, along y, 2) [kg/s]
+    nodes     what the sleeping points bring, as in `Grid.nodes`
+    full      mass of a full cell of the densest body at the start [kg/m]
+    """
+
+    def __init__(self, settings: SleepSection, bodies: Sequence[Body], grid: Grid, basis: Basis) -> None:
+        self.speed = settings.speed or 0.0
+        self.window = settings.window
+        self.bodies = bodies
+        self.grid = grid
+        self.basis = basis
+        # Before the first window: one that ends when that is to begin, in which every point came from far away.
+        self.started = settings.start - settings.window
+        self.places = [np.full((2, body.count), np.inf) for body in bodies]
+        self.withheld = np.zeros((*grid.shape, 2))
+        self.nodes = np.zeros(grid.nodes.shape)
+        self.reach = nothing_in_reach(grid)
+        self.full = max(body.initial_density for body in bodies) * grid.cell_size**2
+
+    @property
+    def has_sleepers(self) -> bool:
+        """Whether any point sleeps."""
+        return any(body.awake < body.count for body in self.bodies)
+
+    def open_window(self, time: float) -> None:
+        """Begin a window at a time [s]."""
+        self.started = time
+        # New memory rather than zeros in the old: occupied only where something is withheld.
+        self.withheld = np.zeros((*self.grid.shape, 2))
+        for body, places in zip(self.bodies, self.places, strict=True):
+            places[:, body.ids - body.first_id] = body.points[[X, Y]]
+
+    def lay_on_grid(self, reach: Reach) -> None:
+        """Let the nodes in reach start from what the sleeping points bring."""
+        _copy(self.nodes, self.grid.nodes, self.grid.shape[1], reach.first_rows, reach.last_rows)
+
+    def hold(self, reach: Reach) -> None:
+        """Hold the nodes with sleeping mass, if there are any."""
+        if self.has_sleepers:
+            _hold(self.grid.nodes, self.nodes, self.withheld, reach.first_rows, reach.last_rows)
+
+    def wake_up(self, reach: Reach) -> bool:
+        """Wake what is near a node in reach from which too much is withheld; returns whether anything woke."""
+        stirred = np.zeros(self.grid.shape, np.bool_)
+        waking = self.full * WAKING * self.speed
+        if not _stir_nodes(self.withheld, waking * waking, reach.first_rows, reach.last_rows, stirred):
+            return False
+        self.withheld[stirred] = 0.0
+        woke = False
+        for body in self.bodies:
+            wakes = self._touched(body.sleeping_rows, stirred)
+            if wakes.any():
+                body.divide(np.concatenate([np.zeros(body.awake, np.bool_), ~wakes]))
+                woke = True
+        return woke
+
+    def fall_asleep(self, time: float) -> bool:
+        """At the end of a window, send to sleep what rested; returns whether anything fell asleep."""
+        if time - self.started < self.window:
+            return False
+        stirred = np.zeros(self.grid.shape, np.bool_)
+        for body, places in zip(self.bodies, self.places, strict=True):
+            was = places[:, body.ids - body.first_id]
+            displaced = np.hypot(*(body.points[[X, Y]] - was)) > self.speed * (time - self.started)
+            _stir_points(*body.points[[X, Y]][:, displaced], *self._stencil(), stirred)
+        fell = False
+        for body in self.bodies:
+            sleeps = np.concatenate([~self._touched(body.rows, stirred), np.ones(body.count - body.awake, np.bool_)])
+            if np.count_nonzero(sleeps) >= body.count - body.awake + LANES:
+                body.divide(sleeps)
+                fell = True
+        self.open_window(time)
+        return fell
+
+    def bring_sleepers(self) -> None:
+        """Scatter anew what the sleeping points bring, after some woke or fell asleep."""
+        clear(self.nodes, self.grid, self.reach)
+        self.reach = reach_of([body.sleeping_rows for body in self.bodies], self.grid, self.basis, ())
+        for body in self.bodies:
+            body.sleepers_to_grid(self.nodes, self.grid)
+
+    def _touched(self, rows: Sequence[NDArray[np.float64]], stirred: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Whether any node of each point is marked."""
+        touched: NDArray[np.bool_] = _touched(rows[X], rows[Y], *self._stencil(), stirred)
+        return touched
+
+    def _stencil(self) -> tuple[tuple[float, float], float, float, int]:
+        return self.grid.origin, self.grid.cell_size, self.basis.offset, self.basis.width
+
+
+@njit(parallel=True, cache=True)
+@named(CORE_MARK)
+def _copy(source, target, nodes_y, first_rows, last_rows):  # type: ignore[no-untyped-def]
+    for i in prange(len(first_rows)):
+        if last_rows[i] >= first_rows[i]:
+            first, last = (i * nodes_y + first_rows[i]) * COMPONENTS, (i * nodes_y + last_rows[i] + 1) * COMPONENTS
+            target[first:last] = source[first:last]
+
+
+@njit(parallel=True, cache=True)
+@named(CORE_MARK)
+def _hold(nodes, asleep, withheld, first_rows, last_rows):  # type: ignore[no-untyped-def]
+    for i in prange(len(first_rows)):
+        for j in range(first_rows[i], last_rows[i] + 1):
+            node = (i * withheld.shape[1] + j) * COMPONENTS
+            if asleep[node + MASS] > 0.0:
+                withheld[i, j, 0] += nodes[node + MASS] * nodes[node + NEW_VX]
+                withheld[i, j, 1] += nodes[node + MASS] * nodes[node + NEW_VY]
+                nodes[node + NEW_VX] = nodes[node + NEW_VY] = 0.0
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def _stir_nodes(withheld, waking_squared, first_rows, last_rows, stirred):  # type: ignore[no-untyped-def]
+    """Mark what is around the nodes from which too much is withheld; returns whether there are any."""
+    found = False
+    for i in range(len(first_rows)):
+        for j in range(first_rows[i], last_rows[i] + 1):
+            if withheld[i, j, 0] ** 2 + withheld[i, j, 1] ** 2 > waking_squared:
+                stirred[max(0, i - RING) : i + RING + 1, max(0, j - RING) : j + RING + 1] = True
+                found = True
+    return found
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def _stir_points(x, y, origin, cell_size, offset, width, stirred):  # type: ignore[no-untyped-def]
+    """Mark what is around points."""
+    for p in range(len(x)):
+        i = int((x[p] - origin[0]) / cell_size - offset)
+        j = int((y[p] - origin[1]) / cell_size - offset)
+        stirred[max(0, i - RING) : i + width + RING, max(0, j - RING) : j + width + RING] = True
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def _touched(x, y, origin, cell_size, offset, width, stirred):  # type: ignore[no-untyped-def]
+    touched = np.empty(len(x), np.bool_)
+    for p in range(len(x)):
+        i = int((x[p] - origin[0]) / cell_size - offset)
+        j = int((y[p] - origin[1]) / cell_size - offset)
+        touched[p] = stirred[i : i + width, j : j + width].any()
+    return touched
