@@ -27,7 +27,7 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from materials.compilation import PointwiseLaw, mark_of_sources, named, pointwise_law
 from materials.tensor import SymmetricTensor
-from mpm_core.columns import DENSITY, FIRST_STATE, SXX, SXY, SYY, SZZ, VX, VY, X, Y
+from mpm_core.columns import DENSITY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
 from mpm_core.simulation import Simulation
 
 # Nodes between the edge of the grid and the walls.
@@ -150,7 +150,7 @@ class Yardstick:
         self.c = np.zeros((body.count, 4))
         self.stress = np.ascontiguousarray(points[[SXX, SYY, SZZ, SXY]].T)
         self.density = points[DENSITY].copy()
-        self.states = np.ascontiguousarray(points[FIRST_STATE:].T)
+        self.states = np.ascontiguousarray(body.states.T)
         self.point_mass, self.parameters = body.point_mass, tuple(body.parameters)
         shape = (scene.grid.cells[0] + 1 + 2 * PADDING, scene.grid.cells[1] + 1 + 2 * PADDING)
         self.grid_m, self.grid_v = np.zeros(shape), np.zeros((*shape, 2))

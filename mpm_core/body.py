@@ -16,9 +16,12 @@ from mpm_core.grid_to_points import BLOCK, make_grid_to_points
 from mpm_core.grid_to_points import REPORTS as TRANSFER_REPORTS
 from mpm_core.points_to_grid import make_points_to_grid
 from mpm_core.quads import LANES
-from mpm_core.sorting import balanced_chunks, sort_by_stencil
+from mpm_core.sorting import balanced_chunks, reorder, sort_by_stencil
 from mpm_core.stress import MAX_SIGNAL_SPEED, make_stress_pass
 from mpm_core.stress import REPORTS as STRESS_REPORTS
+
+# Points whose distinct states are found together at the start; memory would peak with all of them.
+POINTS_AT_ONCE = 2**18
 
 
 class Body:
@@ -44,7 +47,7 @@ class Body:
         self.point_mass = point_mass
         self.initial_density = float(points[DENSITY, 0])
         self.first_id = first_id
-        self.ids = np.arange(first_id, first_id + points.shape[1])
+        self.ids = np.arange(first_id, first_id + points.shape[1], dtype=np.int32)
         self.stripe_starts = np.zeros(1, np.int64)
         self.chunks = np.zeros(1, np.int64)
         self.signal_speed_asleep = 0.0
@@ -80,15 +83,29 @@ class Body:
     @property
     def column_names(self) -> tuple[str, ...]:
         """What the rows of `points` hold."""
-        return (*NAMES, *self.law.state._fields)
+        return (*NAMES, *self.law.state._fields, *(["shear_strain"] if self._keeps_shear_strain else []))
 
-    def choose_kernels(self, basis: Basis, keeps_shear_strain: bool, spreads: bool) -> None:
+    @property
+    def states(self) -> NDArray[np.float64]:
+        """The law's state variables of all points, shape (variables, n)."""
+        return self.points[FIRST_STATE : FIRST_STATE + len(self.law.state._fields)]
+
+    @property
+    def shear_strain(self) -> NDArray[np.float64]:
+        """The accumulated shear strain of all points, for a scene that writes it [1]."""
+        return self.points[FIRST_STATE + len(self.law.state._fields)]
+
+    @property
+    def _keeps_shear_strain(self) -> bool:
+        return len(self.points) > FIRST_STATE + len(self.law.state._fields)
+
+    def choose_kernels(self, basis: Basis, spreads: bool) -> None:
         """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""
         ties = self.is_loose
         self._points_to_grid = make_points_to_grid(basis)
         self._grid_to_points = make_grid_to_points(basis, ties=False, spreads=False)
         self._tying_grid_to_points = make_grid_to_points(basis, ties, spreads and ties)
-        self._stress_pass = make_stress_pass(pointwise_law(self.law), keeps_shear_strain)
+        self._stress_pass = make_stress_pass(pointwise_law(self.law), self._keeps_shear_strain)
         nothing, parameters = tuple(allocate(self.points.shape[0], 0)), tuple(self.parameters)
         explained(self.law, self._stress_pass, nothing, 1.0, parameters, 0.0, 0.0, 0.0, self.stress_reports[:0])
 
@@ -99,11 +116,13 @@ class Body:
 
     def largest_signal_speed(self) -> float:
         """The largest sum of sound speed and point speed [m/s], in plain Python over the distinct states."""
-        rows = np.vstack([self.points[[SXX, SYY, SZZ, SXY, DENSITY]], self.points[FIRST_STATE:]])
+        rows = [*(self.points[row] for row in (SXX, SYY, SZZ, SXY, DENSITY)), *self.states]
         fastest = 0.0
-        for xx, yy, zz, xy, density, *state in np.unique(rows.T, axis=0).tolist():
-            stress = SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0)
-            fastest = max(fastest, self.law.sound_speed(stress, density, self.law.state(*state), self.parameters))
+        for start in range(0, self.count, POINTS_AT_ONCE):
+            block = np.stack([row[start : start + POINTS_AT_ONCE] for row in rows], axis=1)
+            for xx, yy, zz, xy, density, *state in np.unique(block, axis=0).tolist():
+                stress = SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0)
+                fastest = max(fastest, self.law.sound_speed(stress, density, self.law.state(*state), self.parameters))
         return fastest + float(np.sqrt((self.velocities**2).sum(axis=0).max()))
 
     def corners(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -115,7 +134,7 @@ class Body:
         """Bring the points that are awake into the order of their stencils and cut them into stripes."""
         points = self.points[:, : self.awake]
         order, self.stripe_starts = sort_by_stencil(points, grid.origin, grid.cell_size, basis.offset, window)
-        self._reorder(order)
+        reorder(self.points, self.ids, order)
         self.share_between(threads)
 
     def divide(self, asleep: NDArray[np.bool_]) -> None:
@@ -128,16 +147,11 @@ class Body:
         for columns in (slice(VX, VY + 1), GRADIENT, AFFINE):
             self.points[columns, asleep] = 0.0
         first = int(np.argmax(asleep))
-        self._reorder(first + np.argsort(asleep[first:], kind="stable"), first)
+        order = (first + np.argsort(asleep[first:], kind="stable")).astype(np.int32)
         awake = len(asleep) - int(np.count_nonzero(asleep))
         self.set_awake(min(len(asleep), -(-awake // LANES) * LANES))
 
-    def _reorder(self, order: NDArray[np.int64], first: int = 0) -> None:
-        """Bring points from `first` on, as many as `order` names, into an order."""
-        places = slice(first, first + len(order))
-        for column in self.points:
-            column[places] = column[order]
-        self.ids[places] = self.ids[order]
+        reorder(self.points, self.ids, order, first)
 
     def share_between(self, threads: int) -> None:
         """Cut the stripes into one run per thread."""
@@ -210,5 +224,5 @@ class Body:
         fields = self.law.state._fields
         if name not in fields:
             raise InputError(f"law {self.law.name} has no state variable '{name}'")
-        column: NDArray[np.float64] = self.points[FIRST_STATE + fields.index(name)]
+        column: NDArray[np.float64] = self.states[fields.index(name)]
         return column

@@ -1,6 +1,7 @@
 """The columns of the point array: one contiguous row of memory per quantity, the same order for every law.
 
-The law's state variables follow after `FIRST_STATE`, in the order of its declaration.
+The law's state variables follow after `FIRST_STATE`, in the order of its declaration, and the accumulated shear strain
+after them, where a scene writes it.
 """
 
 import numpy as np
@@ -11,7 +12,7 @@ NAMES = (
     *("gradient_xx", "gradient_xy", "gradient_yx", "gradient_yy"),
     *("affine_xx", "affine_xy", "affine_yx", "affine_yy"),
     *("stress_xx", "stress_yy", "stress_zz", "stress_xy"),
-    *("density", "mean_density", "mean_pressure", "crowding", "shear_strain"),
+    *("density", "mean_around", "crowding"),
 )
 X, Y = 0, 1
 VX, VY = 2, 3
@@ -20,9 +21,9 @@ AXX, AXY, AYX, AYY = 8, 9, 10, 11
 GRADIENT, AFFINE = slice(4, 8), slice(8, 12)
 SXX, SYY, SZZ, SXY = 12, 13, 14, 15
 DENSITY = 16
-# what a point gathers of the material around it
-MEAN_DENSITY, MEAN_PRESSURE, CROWDING = 17, 18, 19
-SHEAR_STRAIN = 20
+# What a point gathers of the material around it: the mean pressure, or without stress of its own the mean density; and
+# the crowding.
+MEAN_AROUND, CROWDING = 17, 18
 FIRST_STATE = len(NAMES)
 
 DOUBLES_PER_CACHE_LINE = 8

@@ -15,7 +15,7 @@ from materials.errors import nearest_name
 from materials.law import Law
 from materials.tensor import deviatoric_stress, pressure
 from mpm_core.body import Body
-from mpm_core.columns import DENSITY, LXX, LYY, SHEAR_STRAIN, SXX, SXY, SYY, SZZ, VX, VY, X, Y
+from mpm_core.columns import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
 from mpm_core.output.frame import Field, Frame
 from mpm_core.sources import CORE_MARK
 
@@ -80,7 +80,10 @@ FIELDS = {
         FieldDeclaration("pressure", "Pa", "p = -tr(sigma)/3, compression-positive", _stress_invariant(pressure)),
         FieldDeclaration("deviatoric_stress", "Pa", "q = sqrt(3/2 s:s)", _stress_invariant(deviatoric_stress)),
         FieldDeclaration(
-            "shear_strain", "1", "accumulated shear strain, integral of sqrt(1/2 D_d:D_d) dt", _column(SHEAR_STRAIN)
+            "shear_strain",
+            "1",
+            "accumulated shear strain, integral of sqrt(1/2 D_d:D_d) dt",
+            lambda body: body.shear_strain,
         ),
         FieldDeclaration("density", "kg/m3", "bulk density", _column(DENSITY)),
         FieldDeclaration("solid_fraction", "1", "bulk density over grain density", _solid_fraction, "grain_density"),

@@ -27,7 +27,7 @@ from numba.extending import register_jitable
 from materials.compilation import named
 from materials.tensor import SymmetricTensor, shear_strain_rate
 from mpm_core.basis import Basis
-from mpm_core.columns import AXX, AXY, AYX, AYY, CROWDING, LXX, LXY, LYX, LYY, MEAN_DENSITY, MEAN_PRESSURE, VX, VY, X, Y
+from mpm_core.columns import AXX, AXY, AYX, AYY, CROWDING, LXX, LXY, LYX, LYY, MEAN_AROUND, SXX, SYY, VX, VY, X, Y
 from mpm_core.grid import BULK, COMPONENTS, NEW_VX
 from mpm_core.quads import (
     LANES,
@@ -41,6 +41,7 @@ from mpm_core.quads import (
     scaled_sum,
     smallest,
     total,
+    where_equal,
 )
 from mpm_core.sources import CORE_MARK
 from mpm_core.stencils import GROUP, four_transposed, make_find_stencils
@@ -144,12 +145,12 @@ def updated_gradients(rows, first, last, cell_size, memory, stencils, velocities
 @register_jitable(forceinline=True)
 def updated_surroundings(rows, first, last, bulk):  # type: ignore[no-untyped-def]
     """Update the averages of the material around a group."""
-    mean_density, mean_pressure, crowding = rows[MEAN_DENSITY], rows[MEAN_PRESSURE], rows[CROWDING]
+    mean_around, crowding, sxx, syy = rows[MEAN_AROUND], rows[CROWDING], rows[SXX], rows[SYY]
     for p in range(first, last, LANES):
         _, crowded, pressure, density = four_transposed(bulk.means, p - first)
         put_quad(crowding, p, crowded)
-        put_quad(mean_pressure, p, pressure)
-        put_quad(mean_density, p, density)
+        without_sxx = where_equal(quad_at(syy, p), 0.0, density, pressure)
+        put_quad(mean_around, p, where_equal(quad_at(sxx, p), 0.0, without_sxx, pressure))
 
 
 @register_jitable(forceinline=True)

@@ -5,20 +5,25 @@ from numpy.typing import NDArray
 
 from materials import InputError, SymmetricTensor
 from materials.law import Law
-from mpm_core.body import Body
+from mpm_core.body import POINTS_AT_ONCE, Body
 from mpm_core.columns import DENSITY, FIRST_STATE, SXX, SYY, SZZ, VX, VY, X, Y, allocate
 from mpm_core.scene import BodySection, InitialStressSection, Scene
 from mpm_core.shapes import lattice
 
 
-def build_bodies(scene: Scene) -> list[Body]:
-    """The bodies of a scene. Raises InputError for empty, overlapping or misplaced ones."""
+def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
+    """The bodies of a scene, with or without a column for the shear strain.
+
+    Raises InputError for empty, overlapping or misplaced ones.
+    """
     bodies: list[Body] = []
     positions = [_positions(scene, number, section) for number, section in enumerate(scene.body)]
     _refuse_overlap(scene, positions)
     first_id = 0
     for number, section in enumerate(scene.body):
-        body = _build(scene, section, positions[number], f"body.{number}", first_id)
+        body = _build(scene, section, positions[number], f"body.{number}", first_id, keeps_shear_strain)
+        # With many points, memory peaks here.
+        positions[number] = np.empty((0, 2))
         first_id += body.count
         bodies.append(body)
     return bodies
@@ -49,10 +54,17 @@ def _refuse_overlap(scene: Scene, positions: list[NDArray[np.float64]]) -> None:
                 raise InputError(f"body.{first} and body.{second} overlap, for instance at ({x:g}, {y:g})")
 
 
-def _build(scene: Scene, section: BodySection, positions: NDArray[np.float64], name: str, first_id: int) -> Body:
+def _build(
+    scene: Scene,
+    section: BodySection,
+    positions: NDArray[np.float64],
+    name: str,
+    first_id: int,
+    keeps_shear_strain: bool,
+) -> Body:
     law = scene.law(section.material)
     parameters = scene.parameters(section.material)
-    points = allocate(FIRST_STATE + len(law.state._fields), len(positions))
+    points = allocate(FIRST_STATE + len(law.state._fields) + keeps_shear_strain, len(positions))
     points[X], points[Y] = positions.T
     points[VX], points[VY] = section.velocity
     points[DENSITY] = section.density
@@ -87,11 +99,14 @@ def _depth(positions: NDArray[np.float64], spacing: float) -> NDArray[np.float64
 
 
 def _initialise_state(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64]) -> None:
-    """Fill the columns of the law's state, one call for each distinct initial stress."""
-    stresses = np.column_stack([points[SXX], points[SYY], points[SZZ], points[DENSITY]])
-    distinct, which = np.unique(stresses, axis=0, return_inverse=True)
-    states = [
-        law.initial_state(SymmetricTensor(xx, yy, zz, 0.0, 0.0, 0.0), density, parameters)
-        for xx, yy, zz, density in distinct.tolist()
-    ]
-    points[FIRST_STATE:] = np.array(states)[which].T.reshape(len(law.state._fields), points.shape[1])
+    """Fill the columns of the law's state, one call for each distinct initial stress of some points."""
+    states = points[FIRST_STATE : FIRST_STATE + len(law.state._fields)]
+    for start in range(0, points.shape[1], POINTS_AT_ONCE):
+        block = slice(start, start + POINTS_AT_ONCE)
+        stresses = points[[SXX, SYY, SZZ, DENSITY], block].T
+        distinct, which = np.unique(stresses, axis=0, return_inverse=True)
+        found = [
+            law.initial_state(SymmetricTensor(xx, yy, zz, 0.0, 0.0, 0.0), density, parameters)
+            for xx, yy, zz, density in distinct.tolist()
+        ]
+        states[:, block] = np.array(found)[which].T.reshape(states[:, block].shape)

@@ -12,7 +12,7 @@ import numpy as np
 from materials.tensor import SymmetricTensor
 from mpm_core.basis import SMALLEST_MOMENT_AT_WALL
 from mpm_core.body import Body
-from mpm_core.columns import DENSITY, FIRST_STATE, SXX, SXY, SYY, SZZ, X, Y
+from mpm_core.columns import DENSITY, SXX, SXY, SYY, SZZ, X, Y
 from mpm_core.simulation import Simulation
 
 
@@ -43,7 +43,7 @@ def _at_bounds(body: Body) -> int:
     law = body.law
     if law.at_bound is None:
         return 0
-    rows = np.vstack([body.points[[SXX, SYY, SZZ, SXY, DENSITY]], body.points[FIRST_STATE:]])
+    rows = np.vstack([body.points[[SXX, SYY, SZZ, SXY, DENSITY]], body.states])
     return sum(
         law.at_bound(SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0), density, law.state(*state), body.parameters)
         for xx, yy, zz, xy, density, *state in rows.T.tolist()

@@ -99,11 +99,11 @@ class Simulation:
         self.periodic_axes = _periodic_axes(scene)
         size = (scene.grid.lower, scene.grid.cells, scene.grid.cell_size)
         self.grid = Grid(*size, self.periodic_axes, self.basis.wall_room)
-        self.bodies = build_bodies(scene)
-        self.fields = chosen_fields(scene.output.fields, [body.law for body in self.bodies])
+        self.fields = chosen_fields(scene.output.fields, [scene.law(section.material) for section in scene.body])
+        self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
         started = time.perf_counter()
         for body in self.bodies:
-            body.choose_kernels(self.basis, "shear_strain" in self.fields, scene.transfer.spreading)
+            body.choose_kernels(self.basis, scene.transfer.spreading)
         initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
         self.walls = _walls(scene)

@@ -19,13 +19,12 @@ from materials.tensor import THIRD, SymmetricTensor, shear_strain_rate, trace
 from mpm_core.columns import (
     CROWDING,
     DENSITY,
+    FIRST_STATE,
     LXX,
     LXY,
     LYX,
     LYY,
-    MEAN_DENSITY,
-    MEAN_PRESSURE,
-    SHEAR_STRAIN,
+    MEAN_AROUND,
     SXX,
     SXY,
     SYY,
@@ -67,21 +66,20 @@ def tie_volumes(rows, first, last, duration, exchange, stiffness, ties):  # type
     """The compressive strain that ties the volumes of points to one another for a time [s], into `ties`."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     sxx, syy, szz = rows[SXX], rows[SYY], rows[SZZ]
-    density, crowding = rows[DENSITY], rows[CROWDING]
-    mean_density, mean_pressure = rows[MEAN_DENSITY], rows[MEAN_PRESSURE]
+    density, mean_around, crowding = rows[DENSITY], rows[MEAN_AROUND], rows[CROWDING]
     for p in range(first, last):
         motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
         shear_rate = shear_strain_rate(motion)
         share = evening_share(shear_rate, exchange)
         pressure = (sxx[p] + syy[p] + szz[p]) * -THIRD
-        evening = evening_strain(pressure, mean_pressure[p], stiffness[p - first], share)
-        closing = closing_strain(density[p], mean_density[p], share)
+        evening = evening_strain(pressure, mean_around[p], stiffness[p - first], share)
+        closing = closing_strain(density[p], mean_around[p], share)
         has_contact = sxx[p] != 0.0 or syy[p] != 0.0
         ties[p - first] = (evening if has_contact else closing) + SQUEEZE * duration * shear_rate * crowding[p]
 
 
 @register_jitable
-def bring_forward(rows, first, last, dt, ties, room, keeps_shear_strain):  # type: ignore[no-untyped-def]
+def bring_forward(rows, first, last, dt, ties, room):  # type: ignore[no-untyped-def]
     """Rotate the stress and bring the density to the end of the step; returns the largest volumetric increment.
 
     `ties` are compressive strains besides those of the motion. The room receives the power of the old stress over mass,
@@ -90,7 +88,7 @@ def bring_forward(rows, first, last, dt, ties, room, keeps_shear_strain):  # typ
     works, volumes = room
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
-    density, shear_strain = rows[DENSITY], rows[SHEAR_STRAIN]
+    density = rows[DENSITY]
     largest = np.int64(0)
     for p in range(first, last):
         motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
@@ -103,10 +101,29 @@ def bring_forward(rows, first, last, dt, ties, room, keeps_shear_strain):  # typ
         volumes[p - first] = inverse * grown * grown
         sxx[p], syy[p], sxy[p] = xx, yy, xy
         density[p] *= density[p] * shrunk * shrunk * inverse
-        if keeps_shear_strain:
-            shear_strain[p] += dt * shear_strain_rate(motion)
         largest = max(largest, ordered_bits(abs(2.0 * half_increment)))
     return largest
+
+
+def make_accumulate_shear_strain(row: int | None, mark: str) -> Callable[..., Any]:
+    """The loop over points that brings their shear strain forward, in this row; without one, nothing."""
+    if row is None:
+        return no_shear_strain
+
+    @register_jitable
+    @named(mark)
+    def accumulate_shear_strain(rows, first, last, dt):  # type: ignore[no-untyped-def]
+        lxx, lxy, lyx, lyy, shear_strain = rows[LXX], rows[LXY], rows[LYX], rows[LYY], rows[row]
+        for p in range(first, last):
+            motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
+            shear_strain[p] += dt * shear_strain_rate(motion)
+
+    return accumulate_shear_strain
+
+
+@register_jitable
+def no_shear_strain(rows, first, last, dt):  # type: ignore[no-untyped-def]
+    """Do nothing."""
 
 
 @register_jitable
@@ -136,6 +153,8 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
     mark = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}"
     apply_law, find_stiffness = make_apply_law(law, mark), make_find_stiffness(law, mark)
     largest_signal_speed = make_largest_signal_speed(law, mark)
+    after_state = FIRST_STATE + len(law.state._fields)
+    accumulate_shear_strain = make_accumulate_shear_strain(after_state if keeps_shear_strain else None, mark)
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(mark)
@@ -150,7 +169,8 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
                 if tied > 0.0:
                     find_stiffness(rows, first, last, parameters, stiffness)
                     tie_volumes(rows, first, last, tied, exchange, stiffness, ties)
-                increment = bring_forward(rows, first, last, dt, ties, room, keeps_shear_strain)
+                accumulate_shear_strain(rows, first, last, dt)
+                increment = bring_forward(rows, first, last, dt, ties, room)
                 apply_law(rows, first, last, ties, parameters, dt)
                 speed = largest_signal_speed(rows, first, last, parameters)
                 work += work_done(rows, first, last, room)

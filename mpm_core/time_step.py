@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from materials.law import Law
 from materials.tensor import SymmetricTensor, contraction, isotropic, scaled, trace
 from mpm_core.body import Body
-from mpm_core.columns import DENSITY, FIRST_STATE, LXX, LYY, SXX, SXY, SYY, SZZ
+from mpm_core.columns import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ
 
 # Of volume, in one adaptive step.
 LARGEST_STRAIN = 0.02
@@ -116,7 +116,7 @@ def signal_speeds(body: Body) -> NDArray[np.float64]:
 
 def sound_speeds(body: Body) -> NDArray[np.float64]:
     """Sound speed of each point [m/s], in plain Python."""
-    rows = np.vstack([body.points[[SXX, SYY, SZZ, SXY, DENSITY]], body.points[FIRST_STATE:]])
+    rows = np.vstack([body.points[[SXX, SYY, SZZ, SXY, DENSITY]], body.states])
     found = np.empty(body.count)
     for point, (xx, yy, zz, xy, density, *state) in enumerate(rows.T.tolist()):
         stress = SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0)

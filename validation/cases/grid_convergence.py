@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
-from validation.collapses import Pile, collapse, pile
+from validation.collapses import SCENES, Pile, collapse, pile
 from validation.scenes import advance
 
 BAND = 3e-2
@@ -11,11 +11,7 @@ END = 1.5
 OBSERVABLES = ("center_of_mass_height", "runout", "height")
 CELLS = {
     Effort.QUICK: {"mu(I)-LC": (0.05, 0.025)},
-    Effort.FULL: {
-        "mu(I)-LC": (0.025, 0.0125, 0.00625, 0.003125),
-        "MCC OCR 1": (0.025, 0.0125, 0.00625),
-        "MCC OCR 4": (0.025, 0.0125, 0.00625),
-    },
+    Effort.FULL: dict.fromkeys(SCENES, (0.025, 0.0125, 0.00625, 0.003125)),
 }
 
 
