@@ -229,7 +229,8 @@ class Simulation:
         """Wake what something moves, and let fall asleep what rests."""
         looks = self.steps % STEPS_PER_LOOK == 0 and sleep.has_sleepers
         woke = looks and sleep.wake_up(self.reach)
-        fell = self.body_force is None and sleep.fall_asleep(self.time)
+        # The reports of this step, of which the sleepers' signal speed is taken, serve one division.
+        fell = not woke and self.body_force is None and sleep.fall_asleep(self.time)
         if woke or fell:
             self._find_window()
             self._sort()
