@@ -149,9 +149,8 @@ class Body:
         first = int(np.argmax(asleep))
         order = (first + np.argsort(asleep[first:], kind="stable")).astype(np.int32)
         awake = len(asleep) - int(np.count_nonzero(asleep))
-        self.set_awake(min(len(asleep), -(-awake // LANES) * LANES))
-
         reorder(self.points, self.ids, order, first)
+        self.set_awake(min(len(asleep), -(-awake // LANES) * LANES))
 
     def share_between(self, threads: int) -> None:
         """Cut the stripes into one run per thread."""

@@ -22,8 +22,6 @@ def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
     first_id = 0
     for number, section in enumerate(scene.body):
         body = _build(scene, section, positions[number], f"body.{number}", first_id, keeps_shear_strain)
-        # With many points, memory peaks here.
-        positions[number] = np.empty((0, 2))
         first_id += body.count
         bodies.append(body)
     return bodies

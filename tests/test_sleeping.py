@@ -13,7 +13,7 @@ from mpm_core.grid import COMPONENTS, MASS, PX, PY
 from mpm_core.observables import pile_shape
 from mpm_core.output.checkpoint import Clock, read_checkpoint, write_checkpoint
 from mpm_core.output.history import read_history
-from mpm_core.run import next_step
+from validation.scenes import advance
 
 SPEED = 2e-3
 PILE = changed(COLUMN, {"material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"})
@@ -24,8 +24,6 @@ FALLING = changed(
     COLUMN,
     {
         "grid.upper": [1.0, 1.0],
-        "body.0.shape.lower": [0.0, 0.0],
-        "body.0.shape.upper": [1.0, 0.2],
         "body": [
             {
                 "material": "mu_i_lc",
@@ -41,13 +39,6 @@ FALLING = changed(
         ],
     },
 )
-
-
-def advance(case, end):
-    while case.time < end:
-        dt, arrival = next_step(case, end)
-        case.step(dt)
-        case.time = case.time if arrival is None else arrival
 
 
 def led_to(content, end, changes=None, threads=1):

@@ -1,6 +1,7 @@
 """The pile of a collapse that sleeps: what it costs from 1.2 s on, and what its profile owes to it."""
 
 import time
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -46,15 +47,15 @@ def deposit(material: str, effort: Effort, changes: dict[str, Any]) -> Deposit:
     advance(simulation, START)
     shares: list[float] = []
     (body,) = simulation.bodies
-    resting = _cost_of_step(simulation, END[effort], lambda: shares.append(body.awake / body.count))
+    resting = _cost_of_step(simulation, END[effort], lambda _: shares.append(body.awake / body.count))
     x, depth = _depth(simulation)
     return Deposit(x, depth, float(np.mean(shares)), resting / moving)
 
 
-def _cost_of_step(simulation: Simulation, end: float, observe: Any = lambda: None) -> float:
+def _cost_of_step(simulation: Simulation, end: float, observe: Callable[[Simulation], None] | None = None) -> float:
     """Mean processor time [s] of the steps up to a time [s]."""
     started, steps = time.process_time(), simulation.steps
-    advance(simulation, end, lambda _: observe(), intervals=100)
+    advance(simulation, end, observe, intervals=100)
     return (time.process_time() - started) / (simulation.steps - steps)
 
 
