@@ -104,7 +104,8 @@ def measure(effort: Effort) -> Evidence:
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """What slides sleeps too."""
     material, effort = "MCC OCR 4", Effort.QUICK
-    without, asleep = (deposit(material, effort, changes) for changes in ({}, {"sleep.speed": 0.2}))
+    too_fast = {"sleep.speed": 0.2, "sleep.start": START}
+    without, asleep = (deposit(material, effort, changes) for changes in ({}, too_fast))
     return compared(material, effort, without, asleep)[:1]
 
 
