@@ -16,7 +16,7 @@ from mpm_core.grid_to_points import BLOCK, make_grid_to_points
 from mpm_core.grid_to_points import REPORTS as TRANSFER_REPORTS
 from mpm_core.points_to_grid import make_points_to_grid
 from mpm_core.quads import LANES
-from mpm_core.sorting import balanced_chunks, reorder, sort_by_stencil
+from mpm_core.sorting import balanced_shares, reorder, sort_by_stencil
 from mpm_core.stress import MAX_SIGNAL_SPEED, make_stress_pass
 from mpm_core.stress import REPORTS as STRESS_REPORTS
 
@@ -49,7 +49,7 @@ class Body:
         self.first_id = first_id
         self.ids = np.arange(first_id, first_id + points.shape[1], dtype=np.int32)
         self.stripe_starts = np.zeros(1, np.int64)
-        self.chunks = np.zeros(1, np.int64)
+        self.shares = (np.zeros(1, np.int64), np.zeros(1, np.int64))
         self.signal_speed_asleep = 0.0
         self.set_awake(points.shape[1])
         self._points_to_grid: Callable[..., Any]
@@ -132,9 +132,9 @@ class Body:
 
     def sort(self, grid: Grid, basis: Basis, window: Window, threads: int) -> None:
         """Bring the points that are awake into the order of their stencils and cut them into stripes."""
-        points = self.points[:, : self.awake]
+        points, ids = self.points[:, : self.awake], self.ids[: self.awake]
         order, self.stripe_starts = sort_by_stencil(points, grid.origin, grid.cell_size, basis.offset, window)
-        reorder(self.points, self.ids, order)
+        reorder(points, ids, order)
         self.share_between(threads)
 
     def divide(self, asleep: NDArray[np.bool_]) -> None:
@@ -147,40 +147,40 @@ class Body:
         for columns in (slice(VX, VY + 1), GRADIENT, AFFINE):
             self.points[columns, asleep] = 0.0
         first = int(np.argmax(asleep))
-        order = (first + np.argsort(asleep[first:], kind="stable")).astype(np.int32)
+        order = np.argsort(asleep[first:], kind="stable").astype(np.int32)
+        reorder(self.points[:, first:], self.ids[first:], order)
         awake = len(asleep) - int(np.count_nonzero(asleep))
-        reorder(self.points, self.ids, order, first)
         self.set_awake(min(len(asleep), -(-awake // LANES) * LANES))
 
     def share_between(self, threads: int) -> None:
-        """Cut the stripes into one run per thread."""
-        self.chunks = balanced_chunks(self.stripe_starts, threads)
+        """Share the stripes between threads."""
+        self.shares = balanced_shares(self.stripe_starts, threads)
 
     def to_grid(self, grid: Grid) -> None:
         """Scatter mass, momentum and internal force of the points that are awake."""
-        self._scatter(self.rows, self.stripe_starts, self.chunks, grid.nodes, grid)
+        self._scatter(self.rows, self.stripe_starts, self.shares, grid.nodes, grid)
 
     def sleepers_to_grid(self, nodes: NDArray[np.float64], grid: Grid) -> None:
         """Scatter what the sleeping points bring to nodes of their own, in the order in which they lie."""
         rows = self.sleeping_rows
         # A single stripe, to one thread: nobody waits for it.
-        self._scatter(rows, np.array([0, len(rows[X])]), np.array([0, 1]), nodes, grid)
+        stripe_starts = np.array([0, len(rows[X])])
+        self._scatter(rows, stripe_starts, balanced_shares(stripe_starts, 1), nodes, grid)
 
     def _scatter(
         self,
         rows: tuple[NDArray[np.float64], ...],
         stripe_starts: NDArray[np.int64],
-        chunks: NDArray[np.int64],
+        shares: tuple[NDArray[np.int64], NDArray[np.int64]],
         nodes: NDArray[np.float64],
         grid: Grid,
     ) -> None:
-        for parity in (0, 1):
+        for shares_of_parity in shares:
             self._points_to_grid(
                 rows,
                 self.point_mass,
                 stripe_starts,
-                chunks,
-                parity,
+                shares_of_parity,
                 nodes,
                 grid.shape[1],
                 grid.ghosts,

@@ -54,6 +54,24 @@ KINETIC_ENERGY, LOWEST_X, HIGHEST_X, LOWEST_Y, HIGHEST_Y, MAX_SPEED, MOVED_X, MO
 REPORTS = 8
 
 
+class Receiving(NamedTuple):
+    """How the points of a group receive; per axis, what belongs to one node for the whole group side by side.
+
+    starts                number of the first node
+    weights_x, weights_y  w
+    slopes_x, slopes_y    w (i - f)/(h moment) [1/m], of which the moving-least-squares gradient is made
+    moment_x, moment_y    second moments of the weights, in cells squared
+    """
+
+    starts: Any
+    weights_x: Any
+    weights_y: Any
+    slopes_x: Any
+    slopes_y: Any
+    moment_x: Any
+    moment_y: Any
+
+
 class Gathered(NamedTuple):
     """Four components that the points of a group receive, those of each point side by side, and their gradients.
 
@@ -88,16 +106,21 @@ def no_sums():  # type: ignore[no-untyped-def]
 @register_jitable(forceinline=True)
 def added_to_sums(sums, twice_energy, moved_x, moved_y, x, y, count):  # type: ignore[no-untyped-def]
     """The sums with four points more, of which only the first `count` exist."""
-    speed_squared = moved_x * moved_x + moved_y * moved_y
+    lowest_x, lowest_y, highest_x, highest_y = x, y, x, y
+    if count < LANES:
+        twice_energy = first_lanes(twice_energy, count, 0.0)
+        moved_x, moved_y = first_lanes(moved_x, count, 0.0), first_lanes(moved_y, count, 0.0)
+        lowest_x, lowest_y = first_lanes(x, count, np.inf), first_lanes(y, count, np.inf)
+        highest_x, highest_y = first_lanes(x, count, -np.inf), first_lanes(y, count, -np.inf)
     return Sums(
-        sums.twice_energy + first_lanes(twice_energy, count, 0.0),
-        sums.moved_x + first_lanes(moved_x, count, 0.0),
-        sums.moved_y + first_lanes(moved_y, count, 0.0),
-        greater(sums.fastest_squared, first_lanes(speed_squared, count, 0.0)),
-        lesser(sums.lowest_x, first_lanes(x, count, np.inf)),
-        greater(sums.highest_x, first_lanes(x, count, -np.inf)),
-        lesser(sums.lowest_y, first_lanes(y, count, np.inf)),
-        greater(sums.highest_y, first_lanes(y, count, -np.inf)),
+        sums.twice_energy + twice_energy,
+        sums.moved_x + moved_x,
+        sums.moved_y + moved_y,
+        greater(sums.fastest_squared, moved_x * moved_x + moved_y * moved_y),
+        lesser(sums.lowest_x, lowest_x),
+        greater(sums.highest_x, highest_x),
+        lesser(sums.lowest_y, lowest_y),
+        greater(sums.highest_y, highest_y),
     )
 
 
@@ -124,7 +147,7 @@ def updated_affine(affine, gradient, p, new, old, memory):  # type: ignore[no-un
 
 
 @register_jitable(forceinline=True)
-def updated_gradients(rows, first, last, cell_size, memory, stencils, velocities, energies):  # type: ignore[no-untyped-def]
+def updated_gradients(rows, first, last, cell_size, memory, receiving, velocities, energies):  # type: ignore[no-untyped-def]
     """Update L and A of a group; `energies` receives A:A D of the points."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     axx, axy, ayx, ayy = rows[AXX], rows[AXY], rows[AYX], rows[AYY]
@@ -137,8 +160,8 @@ def updated_gradients(rows, first, last, cell_size, memory, stencils, velocities
         yx = updated_affine(ayx, lyx, p, new_yx, old_yx, memory)
         xy = updated_affine(axy, lxy, p, new_xy, old_xy, memory)
         yy = updated_affine(ayy, lyy, p, new_yy, old_yy, memory)
-        along_x = (xx * xx + yx * yx) * quad_at(stencils.moment_x, k)
-        along_y = (xy * xy + yy * yy) * quad_at(stencils.moment_y, k)
+        along_x = (xx * xx + yx * yx) * quad_at(receiving.moment_x, k)
+        along_y = (xy * xy + yy * yy) * quad_at(receiving.moment_y, k)
         put_quad(energies, k, square * (along_x + along_y))
 
 
@@ -154,7 +177,7 @@ def updated_surroundings(rows, first, last, bulk):  # type: ignore[no-untyped-de
 
 
 @register_jitable(forceinline=True)
-def spread(rows, first, last, cell_size, dt, stencils, bulk):  # type: ignore[no-untyped-def]
+def spread(rows, first, last, cell_size, dt, receiving, bulk):  # type: ignore[no-untyped-def]
     """Move a group down the gradient of crowding, besides the motion of the material."""
     x, y = rows[X], rows[Y]
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
@@ -165,8 +188,8 @@ def spread(rows, first, last, cell_size, dt, stencils, bulk):  # type: ignore[no
         way = dt * cell_size * cell_size * spreading_rate(shear_rate, dt)
         _, slope_x, _, _ = four_transposed(bulk.gradients_x, k)
         _, slope_y, _, _ = four_transposed(bulk.gradients_y, k)
-        put_quad(x, p, quad_at(x, p) - way * quad_at(stencils.moment_x, k) * slope_x)
-        put_quad(y, p, quad_at(y, p) - way * quad_at(stencils.moment_y, k) * slope_y)
+        put_quad(x, p, quad_at(x, p) - way * quad_at(receiving.moment_x, k) * slope_x)
+        put_quad(y, p, quad_at(y, p) - way * quad_at(receiving.moment_y, k) * slope_y)
 
 
 @register_jitable(forceinline=True)
@@ -193,9 +216,8 @@ def make_gather(basis: Basis, component: int, with_gradients: bool) -> Callable[
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{component}_{with_gradients:d}_{CORE_MARK}")
-    def gather(count, nodes, nodes_y, stencils, gathered):  # type: ignore[no-untyped-def]
-        starts, weights_x, weights_y = stencils.starts, stencils.weights_x, stencils.weights_y
-        slopes_x, slopes_y = stencils.slopes_x, stencils.slopes_y
+    def gather(count, nodes, nodes_y, receiving, gathered):  # type: ignore[no-untyped-def]
+        starts, weights_x, weights_y, slopes_x, slopes_y, _, _ = receiving
         means, gradients_x, gradients_y = gathered
         row_length = np.uint64(nodes_y * COMPONENTS)
         for k in range(count):
@@ -223,6 +245,37 @@ def make_gather(basis: Basis, component: int, with_gradients: bool) -> Callable[
     return gather
 
 
+def make_put_receiving(basis: Basis) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Functions that make room for how a group receives, and store that of the four points from p on."""
+    width, find_stencils = basis.width, make_find_stencils(basis)
+
+    @register_jitable(forceinline=True)
+    @named(f"{basis.name}_{CORE_MARK}")
+    def room_for_receiving():  # type: ignore[no-untyped-def]
+        per_point, per_node = np.empty((3, GROUP)), np.empty((4, width * GROUP))
+        return Receiving(per_point[0], per_node[0], per_node[1], per_node[2], per_node[3], per_point[1], per_point[2])
+
+    @register_jitable(forceinline=True)
+    @named(f"{basis.name}_{CORE_MARK}")
+    def put_axis(k, axis, inverse_size, weights, slopes, moments):  # type: ignore[no-untyped-def]
+        scale = inverse_size * axis.per_moment
+        for a in range(width):
+            put_quad(weights, a * GROUP + k, axis.weights[a])
+            put_quad(slopes, a * GROUP + k, axis.weights[a] * (float(a) - axis.place) * scale)
+        put_quad(moments, k, axis.moment)
+
+    @register_jitable(forceinline=True)
+    @named(f"{basis.name}_{CORE_MARK}")
+    def put_receiving(rows, p, k, nodes_y, ghosts, origin, inverse_size, receiving):  # type: ignore[no-untyped-def]
+        starts, weights_x, weights_y, slopes_x, slopes_y, moment_x, moment_y = receiving
+        number, along_x, along_y = find_stencils(rows, p, nodes_y, ghosts, origin, inverse_size)
+        put_quad(starts, k, number)
+        put_axis(k, along_x, inverse_size, weights_x, slopes_x, moment_x)
+        put_axis(k, along_y, inverse_size, weights_y, slopes_y, moment_y)
+
+    return room_for_receiving, put_receiving
+
+
 @cache
 def make_grid_to_points(basis: Basis, ties: bool, spreads: bool) -> Callable[..., Any]:
     """Give the points velocity, its gradient and, if `ties`, averages of the material around, and move them.
@@ -233,29 +286,30 @@ def make_grid_to_points(basis: Basis, ties: bool, spreads: bool) -> Callable[...
     """
     gather_velocities = make_gather(basis, component=NEW_VX, with_gradients=True)
     gather_bulk = make_gather(basis, component=BULK, with_gradients=spreads)
-    room_for_stencils, find_stencils = make_find_stencils(basis, receive=True)
+    room_for_receiving, put_receiving = make_put_receiving(basis)
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{basis.name}_{ties:d}{spreads:d}_{CORE_MARK}")
     def grid_to_points(  # type: ignore[no-untyped-def]
         rows, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, memory, reports
     ):
-        points = len(rows[X])
+        points, inverse_size = len(rows[X]), 1.0 / cell_size
         for block in prange(reports.shape[0]):
-            stencils, room = room_for_stencils(), np.empty((7, GROUP * LANES))
+            receiving, room = room_for_receiving(), np.empty((7, GROUP * LANES))
             velocities, bulk = Gathered(room[0], room[1], room[2]), Gathered(room[3], room[4], room[5])
             energies, sums = room[6], no_sums()
             for start in range(block * BLOCK, min(points, (block + 1) * BLOCK), GROUP):
                 first, last = np.uint64(start), np.uint64(min(start + GROUP, points))
-                find_stencils(rows[X], rows[Y], first, last, nodes_y, ghosts, origin, cell_size, stencils)
-                gather_velocities(last - first, nodes, nodes_y, stencils, velocities)
-                updated_gradients(rows, first, last, cell_size, memory, stencils, velocities, energies)
+                for p in range(first, last, LANES):
+                    put_receiving(rows, p, p - first, nodes_y, ghosts, origin, inverse_size, receiving)
+                gather_velocities(last - first, nodes, nodes_y, receiving, velocities)
+                updated_gradients(rows, first, last, cell_size, memory, receiving, velocities, energies)
                 if ties:
-                    gather_bulk(last - first, nodes, nodes_y, stencils, bulk)
+                    gather_bulk(last - first, nodes, nodes_y, receiving, bulk)
                     updated_surroundings(rows, first, last, bulk)
                 sums = moved(rows, first, last, dt, memory, velocities, energies, sums)
                 if spreads:
-                    spread(rows, first, last, cell_size, dt, stencils, bulk)
+                    spread(rows, first, last, cell_size, dt, receiving, bulk)
             report(reports, block, point_mass, sums)
 
     return grid_to_points

@@ -112,6 +112,22 @@ def _transposed(typing_context: Any, a: Any, b: Any, c: Any, d: Any) -> Any:
 
 
 @intrinsic
+def _halves_swapped(typing_context: Any, quad: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return _shuffled(builder, arguments[0], arguments[0], [2, 3, 0, 1])
+
+    return QUAD(QUAD), generate
+
+
+@intrinsic
+def _halves_joined(typing_context: Any, a: Any, b: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return _shuffled(builder, arguments[0], arguments[1], [0, 1, 6, 7])
+
+    return QUAD(QUAD, QUAD), generate
+
+
+@intrinsic
 def _first_lanes(typing_context: Any, quad: Any, count: Any, otherwise: Any) -> Any:
     numbers = ir.Constant(_VECTOR, [float(number) for number in range(LANES)])
 
@@ -244,6 +260,10 @@ filled: Callable[..., Any] = _filled
 scaled_sum: Callable[..., Any] = _fused
 # (a, b, c, d) -> four quads, of the first lanes, the second lanes and so on
 transposed: Callable[..., Any] = _transposed
+# (quad) -> its second half, then its first
+halves_swapped: Callable[..., Any] = _halves_swapped
+# (a, b) -> the first half of a, the second of b
+halves_joined: Callable[..., Any] = _halves_joined
 # (quad, count, otherwise) -> the first lanes of a quad, and another number in the rest
 first_lanes: Callable[..., Any] = _first_lanes
 # (quad) -> the sum, the smallest and the largest of its numbers

@@ -5,7 +5,7 @@ out of reach hold zeros.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -21,10 +21,15 @@ from mpm_core.sources import CORE_MARK
 DRIFT = 1
 
 
-@dataclass(frozen=True)
-class Reach:
-    """First and last row of each column of nodes, inclusive; the last lies before the first where there is none."""
+class Reach(NamedTuple):
+    """The nodes in reach; where there are none, the last lies before the first.
 
+    first_column, last_column  of all columns of nodes that have any, inclusive
+    first_rows, last_rows      in each column of the grid, inclusive
+    """
+
+    first_column: int
+    last_column: int
     first_rows: NDArray[np.int64]
     last_rows: NDArray[np.int64]
 
@@ -36,7 +41,13 @@ class Reach:
 
 def nothing_in_reach(grid: Grid) -> Reach:
     """The reach of no points."""
-    return Reach(np.full(grid.shape[0], grid.shape[1]), np.full(grid.shape[0], -1))
+    return _between(np.full(grid.shape[0], grid.shape[1]), np.full(grid.shape[0], -1))
+
+
+def _between(first_rows: NDArray[np.int64], last_rows: NDArray[np.int64]) -> Reach:
+    columns = np.flatnonzero(last_rows >= first_rows)
+    first, last = (int(columns[0]), int(columns[-1])) if len(columns) > 0 else (0, -1)
+    return Reach(first, last, first_rows, last_rows)
 
 
 def reach_of(
@@ -46,8 +57,7 @@ def reach_of(
 
     A group is the rows of its points, as in `Body.points`.
     """
-    reach = nothing_in_reach(grid)
-    first, last = reach.first_rows, reach.last_rows
+    _, _, first, last = nothing_in_reach(grid)
     for rows in groups:
         _extend(rows[X], rows[Y], grid.origin, grid.cell_size, basis.offset, basis.width, first, last)
     np.clip(first, 0, grid.shape[1], out=first)
@@ -57,7 +67,7 @@ def reach_of(
     if 1 in periodic_axes:
         occupied = last >= first
         first[occupied], last[occupied] = 0, grid.shape[1] - 1
-    return reach
+    return _between(first, last)
 
 
 @njit(cache=True)

@@ -80,18 +80,18 @@ class Sleep:
 
     def lay_on_grid(self, reach: Reach) -> None:
         """Let the nodes in reach start from what the sleeping points bring."""
-        _copy(self.nodes, self.grid.nodes, self.grid.shape[1], reach.first_rows, reach.last_rows)
+        _copy(self.nodes, self.grid.nodes, self.grid.shape[1], reach)
 
     def hold(self, reach: Reach) -> None:
         """Hold the nodes with sleeping mass, if there are any."""
         if self.has_sleepers:
-            _hold(self.grid.nodes, self.nodes, self.withheld, reach.first_rows, reach.last_rows)
+            _hold(self.grid.nodes, self.nodes, self.withheld, reach)
 
     def wake_up(self, reach: Reach) -> bool:
         """Wake what is near a node in reach from which too much is withheld; returns whether anything woke."""
         stirred = np.zeros(self.grid.shape, np.bool_)
         waking = self.full * WAKING * self.speed
-        if not _stir_nodes(self.withheld, waking * waking, reach.first_rows, reach.last_rows, stirred):
+        if not _stir_nodes(self.withheld, waking * waking, reach, stirred):
             return False
         self.withheld[stirred] = 0.0
         woke = False
@@ -138,18 +138,21 @@ class Sleep:
 
 @njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def _copy(source, target, nodes_y, first_rows, last_rows):  # type: ignore[no-untyped-def]
-    for i in prange(len(first_rows)):
-        if last_rows[i] >= first_rows[i]:
-            first, last = (i * nodes_y + first_rows[i]) * COMPONENTS, (i * nodes_y + last_rows[i] + 1) * COMPONENTS
+def _copy(source, target, nodes_y, reach):  # type: ignore[no-untyped-def]
+    for i in prange(reach.first_column, reach.last_column + 1):
+        if reach.last_rows[i] >= reach.first_rows[i]:
+            first, last = (
+                (i * nodes_y + reach.first_rows[i]) * COMPONENTS,
+                (i * nodes_y + reach.last_rows[i] + 1) * COMPONENTS,
+            )
             target[first:last] = source[first:last]
 
 
 @njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def _hold(nodes, asleep, withheld, first_rows, last_rows):  # type: ignore[no-untyped-def]
-    for i in prange(len(first_rows)):
-        for j in range(first_rows[i], last_rows[i] + 1):
+def _hold(nodes, asleep, withheld, reach):  # type: ignore[no-untyped-def]
+    for i in prange(reach.first_column, reach.last_column + 1):
+        for j in range(reach.first_rows[i], reach.last_rows[i] + 1):
             node = (i * withheld.shape[1] + j) * COMPONENTS
             if asleep[node + MASS] > 0.0:
                 withheld[i, j, 0] += nodes[node + MASS] * nodes[node + NEW_VX]
@@ -159,11 +162,11 @@ def _hold(nodes, asleep, withheld, first_rows, last_rows):  # type: ignore[no-un
 
 @njit(cache=True)
 @named(CORE_MARK)
-def _stir_nodes(withheld, waking_squared, first_rows, last_rows, stirred):  # type: ignore[no-untyped-def]
+def _stir_nodes(withheld, waking_squared, reach, stirred):  # type: ignore[no-untyped-def]
     """Mark what is around the nodes from which too much is withheld; returns whether there are any."""
     found = False
-    for i in range(len(first_rows)):
-        for j in range(first_rows[i], last_rows[i] + 1):
+    for i in range(reach.first_column, reach.last_column + 1):
+        for j in range(reach.first_rows[i], reach.last_rows[i] + 1):
             if withheld[i, j, 0] ** 2 + withheld[i, j, 1] ** 2 > waking_squared:
                 stirred[max(0, i - RING) : i + RING + 1, max(0, j - RING) : j + RING + 1] = True
                 found = True

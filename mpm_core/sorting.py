@@ -1,11 +1,12 @@
 """Keeping points sorted by the cell of their stencil: cache-friendly transfers, and stripes that threads can share.
 
 A stripe is STRIPE columns of stencils. Between two sorts no point may drift by more than one cell, so that a stripe
-reaches at most one column further on either side, plus its stencil; stripes of equal parity then share no node.
+reaches at most one column further on either side, plus its stencil; stripes of equal parity then share no node if a
+stripe is wider than a stencil.
 """
 
 import numpy as np
-from numba import njit
+from numba import njit, prange
 from numpy.typing import NDArray
 
 from materials.compilation import named
@@ -13,7 +14,8 @@ from mpm_core.columns import X, Y
 from mpm_core.grid import Window
 from mpm_core.sources import CORE_MARK
 
-STRIPE = 8
+# One more than the nodes of the widest stencil: the narrower, the more evenly threads share them.
+STRIPE = 5
 LONGEST_DRIFT = 0.9
 
 
@@ -56,25 +58,35 @@ def _counting_sort(  # type: ignore[no-untyped-def]
     return order, stripe_starts
 
 
-def reorder(points: NDArray[np.float64], ids: NDArray[np.int32], order: NDArray[np.int32], first: int = 0) -> None:
-    """Bring points from `first` on, as many as `order` names, into an order, and their ids."""
-    places, room = slice(first, first + len(order)), np.empty(len(order))
-    for column in points:
-        _gather(column, order, room)
-        column[places] = room
-    ids[places] = ids[order]
+def reorder(points: NDArray[np.float64], ids: NDArray[np.int32], order: NDArray[np.int32]) -> None:
+    """Bring points and their ids into an order."""
+    _reorder(points, order)
+    ids[:] = ids[order]
 
 
-@njit(cache=True)
+@njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def _gather(column, order, found):  # type: ignore[no-untyped-def]
-    for p in range(len(order)):
-        found[p] = column[order[p]]
+def _reorder(points, order):  # type: ignore[no-untyped-def]
+    for column in prange(points.shape[0]):
+        found = np.empty(len(order))
+        for p in range(len(order)):
+            found[p] = points[column, order[p]]
+        points[column] = found
 
 
-def balanced_chunks(stripe_starts: NDArray[np.int64], threads: int) -> NDArray[np.int64]:
-    """Boundaries of `threads` runs of stripes that hold about the same number of points each."""
-    targets = np.linspace(0, stripe_starts[-1], threads + 1)
-    boundaries = np.searchsorted(stripe_starts, targets)
-    boundaries[0], boundaries[-1] = 0, len(stripe_starts) - 1
-    return boundaries.astype(np.int64)
+def balanced_shares(stripe_starts: NDArray[np.int64], threads: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The stripes of even number, and those of odd number, in `threads` runs of about the same number of points each.
+
+    Of each run the number of its first stripe; at the end what the next one would be.
+    """
+    counts = np.diff(stripe_starts)
+    return _shares(counts, 0, threads), _shares(counts, 1, threads)
+
+
+def _shares(counts: NDArray[np.int64], parity: int, threads: int) -> NDArray[np.int64]:
+    held = np.concatenate([[0], np.cumsum(counts[parity::2])])
+    targets = np.linspace(0, held[-1], threads + 1)
+    boundaries = np.abs(held[:, np.newaxis] - targets).argmin(axis=0)
+    boundaries[-1] = len(held) - 1
+    shares: NDArray[np.int64] = 2 * boundaries + parity
+    return shares

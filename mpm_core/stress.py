@@ -37,7 +37,7 @@ from mpm_core.sources import CORE_MARK
 from mpm_core.volumes import SQUEEZE, closing_strain, evening_share, evening_strain
 
 # Points that go through the parts of the pass together; they stay in the nearest cache.
-GROUP = 256
+GROUP = 512
 
 # What `stress_pass` reports for each block of points.
 MAX_SIGNAL_SPEED, INTERNAL_WORK, MAX_INCREMENT = range(3)
