@@ -25,7 +25,7 @@ def friction_of_inertial_number(
 
 
 @pointwise
-def plastic_shear_rate(
+def share_after_return(
     trial_shear_stress: float,
     pressure: float,
     stiffness: float,
@@ -33,21 +33,21 @@ def plastic_shear_rate(
     dynamic_friction: float,
     reference_rate: float,
 ) -> float:
-    """The root x >= 0 of tau_trial - stiffness x = mu(I(x)) p [1/s]; zero below the static yield stress.
+    """tau/tau_trial after the return to tau_trial - stiffness x = mu(I(x)) p; one below the static yield stress [1].
 
-    A quadratic in x (backward Euler over a step, after Dunatunga & Kamrin 2015, J. Fluid Mech. 779). The stiffness
-    [Pa s] is 2 G dt and the reference rate [1/s] that of I = I_0, I_0 sqrt(p/rho_p)/d_p.
+    A quadratic in the plastic shear rate x >= 0 (backward Euler over a step, after Dunatunga & Kamrin 2015, J. Fluid
+    Mech. 779). The stiffness [Pa s] is 2 G dt and the reference rate [1/s] that of I = I_0, I_0 sqrt(p/rho_p)/d_p.
     """
     static_stress = static_friction * pressure
     if trial_shear_stress <= static_stress:
-        return 0.0
-    # stiffness x^2 - b x - c = 0
+        return 1.0
+    # y^2 - b y - c = 0 for the drop y = stiffness x of the shear stress
     b = trial_shear_stress - dynamic_friction * pressure - stiffness * reference_rate
-    c = reference_rate * (trial_shear_stress - static_stress)
-    root = math.sqrt(b * b + 4.0 * stiffness * c)
+    c = stiffness * reference_rate * (trial_shear_stress - static_stress)
+    root = math.sqrt(b * b + 4.0 * c)
     # Of the two forms of the root, the one that subtracts nothing.
-    numerator, denominator = (b + root, 2.0 * stiffness) if b > 0.0 else (2.0 * c, max(root - b, 1e-300))
-    return numerator / denominator
+    numerator, denominator = (b + root, 2.0) if b > 0.0 else (2.0 * c, max(root - b, 1e-300))
+    return max(0.0, 1.0 - numerator / (denominator * trial_shear_stress))
 
 
 @pointwise

@@ -99,10 +99,10 @@ class Body:
     def _keeps_shear_strain(self) -> bool:
         return len(self.points) > FIRST_STATE + len(self.law.state._fields)
 
-    def choose_kernels(self, basis: Basis, spreads: bool) -> None:
+    def choose_kernels(self, basis: Basis, precision: str, spreads: bool) -> None:
         """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""
         ties = self.is_loose
-        self._points_to_grid = make_points_to_grid(basis)
+        self._points_to_grid = make_points_to_grid(basis, precision)
         self._grid_to_points = make_grid_to_points(basis, ties=False, spreads=False)
         self._tying_grid_to_points = make_grid_to_points(basis, ties, spreads and ties)
         self._stress_pass = make_stress_pass(pointwise_law(self.law), self._keeps_shear_strain)
@@ -175,18 +175,17 @@ class Body:
         nodes: NDArray[np.float64],
         grid: Grid,
     ) -> None:
-        for shares_of_parity in shares:
-            self._points_to_grid(
-                rows,
-                self.point_mass,
-                stripe_starts,
-                shares_of_parity,
-                nodes,
-                grid.shape[1],
-                grid.ghosts,
-                grid.origin,
-                grid.cell_size,
-            )
+        self._points_to_grid(
+            rows,
+            self.point_mass,
+            stripe_starts,
+            shares,
+            nodes,
+            grid.shape[1],
+            grid.ghosts,
+            grid.origin,
+            grid.cell_size,
+        )
 
     def from_grid(self, grid: Grid, dt: float, memory: float, ties: bool = False) -> None:
         """Gather velocity and its gradient, and where volumes are to be tied what that needs; move the points."""

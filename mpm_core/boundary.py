@@ -61,21 +61,29 @@ class TakenByWall(NamedTuple):
     friction: float
 
 
+def row_of_wall(grid: Grid, wall: Wall) -> int:
+    """Number of the row of nodes on a wall."""
+    return GHOSTS if wall.is_lower else grid.cells[wall.axis] + GHOSTS
+
+
+def is_wall_within(grid: Grid, wall: Wall, window: Window) -> bool:
+    """Whether the row of nodes on a wall passes through a window."""
+    row = row_of_wall(grid, wall)
+    return window.first_x <= row <= window.last_x if wall.axis == 0 else window.first_y <= row <= window.last_y
+
+
 def hold_at_wall(grid: Grid, wall: Wall, window: Window, gaps: NDArray[np.float64], dt: float) -> TakenByWall:
-    """Apply a wall to the new velocities of its row of nodes. Returns the energies that the wall takes.
+    """Apply a wall within a window to the new velocities of its row of nodes. Returns the energies that the wall takes.
 
     A node of a friction wall comes no closer in a step of dt [s] than its gap [m] (`contact`).
 
     Energy is counted as impulse times the mean of old and new velocity, which is zero for what stays at rest; friction
     as the tangential impulse of a friction wall times the mean sliding velocity.
     """
-    index = GHOSTS if wall.is_lower else grid.cells[wall.axis] + GHOSTS
-    first, last = (window.first_x, window.first_y), (window.last_x, window.last_y)
-    if not first[wall.axis] <= index <= last[wall.axis]:
-        return TakenByWall(0.0, 0.0)
     other = 1 - wall.axis
-    start = index * grid.strides[wall.axis] + first[other] * grid.strides[other]
-    count = last[other] - first[other] + 1
+    first, last = (window.first_y, window.last_y) if other == 1 else (window.first_x, window.last_x)
+    start = row_of_wall(grid, wall) * grid.strides[wall.axis] + first * grid.strides[other]
+    count = last - first + 1
     sign = 1.0 if wall.is_lower else -1.0
     work, friction = _hold(
         grid.nodes,
@@ -87,7 +95,7 @@ def hold_at_wall(grid: Grid, wall: Wall, window: Window, gaps: NDArray[np.float6
         int(wall.kind),
         wall.coefficient,
         wall.velocity,
-        gaps[first[other] : last[other] + 1] / dt,
+        gaps[first : last + 1] / dt,
     )
     return TakenByWall(float(work), float(friction))
 

@@ -2,15 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mpm_core.quads import LANES
 
-# Components of a node, two quads that fill a cache line. The first quad: momentum and force before the momentum update,
-# new and old velocity after it. The second: mass, volume and volume times pressure before, mass and what `volumes` is
-# made of after.
+# Components of a node, two quads, in double precision a cache line. The first quad: momentum and force before the
+# momentum update, new and old velocity after it. The second: mass, volume and volume times pressure before, mass and
+# what `volumes` is made of after.
 PX, PY, FX, FY = 0, 1, 2, 3
 NEW_VX, NEW_VY, OLD_VX, OLD_VY = 0, 1, 2, 3
 BULK = LANES
@@ -19,6 +20,9 @@ NODE_CROWDING, NODE_PRESSURE, NODE_DENSITY = BULK + 1, BULK + 2, BULK + 3
 COMPONENTS = 2 * LANES
 
 CACHE_LINE = 64
+
+# What the components of a node are stored as.
+PRECISIONS: dict[str, type[np.floating[Any]]] = {"double": np.float64, "single": np.float32}
 
 # Nodes beyond each side of the domain, enough for the widest stencil of a point that touches a wall.
 GHOSTS = 2
@@ -39,7 +43,7 @@ class Window:
 class Grid:
     """A rectangle of `cells` square cells of `cell_size` [m] whose lower corner is `lower` [m].
 
-    `wall_room` is the part of a cell that belongs to a node at a wall (see `basis`).
+    `wall_room` is the part of a cell that belongs to a node at a wall (see `basis`), `precision` one of `PRECISIONS`.
     Memory is reserved for the whole domain but, being zero until written, occupied only where material has been.
     """
 
@@ -50,18 +54,24 @@ class Grid:
         cell_size: float,
         periodic_axes: Sequence[int] = (),
         wall_room: float = 0.5,
+        precision: str = "double",
     ) -> None:
         self.lower = lower
         self.cells = cells
         self.cell_size = cell_size
         self.upper = (lower[0] + cells[0] * cell_size, lower[1] + cells[1] * cell_size)
         self.shape = (cells[0] + 1 + 2 * GHOSTS, cells[1] + 1 + 2 * GHOSTS)
-        self.nodes: NDArray[np.float64] = _aligned_zeros(self.shape[0] * self.shape[1] * COMPONENTS)
+        self.precision = precision
+        self.nodes = self.empty_nodes()
         # The nodes just beyond the walls, whose velocity is tied to the inside; no node where the axis is periodic.
         walls = [NO_GHOSTS if axis in periodic_axes else self._ghosts(axis) for axis in (0, 1)]
         self.ghosts = (*walls[0], *walls[1])
         self.rooms = tuple(self._rooms(axis, axis in periodic_axes, wall_room) for axis in (0, 1))
         self.origin = (lower[0] - GHOSTS * cell_size, lower[1] - GHOSTS * cell_size)
+
+    def empty_nodes(self) -> NDArray[Any]:
+        """Another set of nodes like `nodes`, all zero."""
+        return _aligned_zeros(self.shape[0] * self.shape[1] * COMPONENTS, PRECISIONS[self.precision])
 
     @property
     def strides(self) -> tuple[int, int]:
@@ -88,8 +98,9 @@ class Grid:
         return Window(first[0], last[0], first[1], last[1])
 
 
-def _aligned_zeros(count: int) -> NDArray[np.float64]:
-    """Zeroed doubles, each node in a cache line of its own; the memory is not touched."""
-    room = np.zeros(count + COMPONENTS)
+def _aligned_zeros(count: int, number: type[np.floating[Any]]) -> NDArray[Any]:
+    """Zeroed numbers from the start of a cache line on, of which a node fills one, or half; no memory is touched."""
+    line = CACHE_LINE // np.dtype(number).itemsize
+    room = np.zeros(count + line, number)
     start = (-room.ctypes.data % CACHE_LINE) // room.itemsize
     return room[start : start + count]

@@ -21,4 +21,5 @@ def nodes_where(grid: Grid, condition: Callable[[Array, Array], NDArray[np.bool_
 
 def hold_nodes(grid: Grid, nodes: NDArray[np.int64]) -> None:
     """Set the new velocity of these nodes to zero."""
-    grid.nodes.reshape(-1, COMPONENTS)[nodes, NEW_VX : NEW_VY + 1] = 0.0
+    if len(nodes) > 0:
+        grid.nodes.reshape(-1, COMPONENTS)[nodes, NEW_VX : NEW_VY + 1] = 0.0

@@ -68,6 +68,7 @@ def _average(nodes, nodes_y, reach, rooms_x, rooms_y, cell):  # type: ignore[no-
             mass = nodes[node + np.uint64(MASS)]
             if mass > 0.0:
                 volume = nodes[node + np.uint64(VOLUME)]
+                per_volume = 1.0 / volume
                 nodes[node + np.uint64(NODE_CROWDING)] = crowding_of(volume, cell * rooms_x[i] * rooms_y[j])
-                nodes[node + np.uint64(NODE_PRESSURE)] = nodes[node + np.uint64(VOLUME_PRESSURE)] / volume
-                nodes[node + np.uint64(NODE_DENSITY)] = mass / volume
+                nodes[node + np.uint64(NODE_PRESSURE)] = nodes[node + np.uint64(VOLUME_PRESSURE)] * per_volume
+                nodes[node + np.uint64(NODE_DENSITY)] = mass * per_volume

@@ -95,6 +95,8 @@ def _steps(scene: Scene, signal_speed: float, stops: int) -> int:
 def _savings(simulation: Simulation) -> list[str]:
     nodes = simulation.grid.shape[0] * simulation.grid.shape[1]
     found = [f"grid: {1.0 - simulation.reach.nodes / nodes:.0%} of the nodes are out of reach at the start"]
+    if simulation.grid.precision == "single":
+        found.append("single precision: half of the memory for the nodes in reach")
     if "shear_strain" not in simulation.fields:
         found.append("shear strain: not accumulated, as no frame holds it")
     if simulation.scene.sleep.speed is not None:

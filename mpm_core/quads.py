@@ -1,4 +1,4 @@
-"""Four doubles side by side in a vector register, for compiled code.
+"""Four doubles side by side in a vector register, for compiled code; arrays may also hold them as singles.
 
 The transfers use them in two ways: as one quantity of four neighbouring points, which are then worked on together, and
 as four components of one grid node, which a point changes together. `transposed` leads from one to the other.
@@ -24,8 +24,8 @@ LANES = 4
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _INDEX = ir.IntType(32)
 _UNDEFINED = ir.Constant(_VECTOR, ir.Undefined)
-# Positions in memory are those of a scalar: no alignment of the whole vector is asked for.
-_ALIGNMENT = 8
+# What arrays hold, and its size. No alignment of a whole vector is asked for.
+_STORED = {types.float64: (ir.DoubleType(), 8), types.float32: (ir.FloatType(), 4)}
 
 
 class QuadType(types.Type):
@@ -53,15 +53,20 @@ def _in_all_lanes(builder: Any, scalar: Any) -> Any:
     return _shuffled(builder, first, _UNDEFINED, [0] * LANES)
 
 
-def _place(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    array = context.make_array(signature.args[0])(context, builder, arguments[0])
-    return builder.bitcast(builder.gep(array.data, [arguments[1]]), _VECTOR.as_pointer())
+def place(context: Any, builder: Any, array_type: Any, arguments: Any, lanes: int) -> tuple[Any, int]:
+    """Pointer to so many lanes of an array from a position on, and the alignment of a lane."""
+    array = context.make_array(array_type)(context, builder, arguments[0])
+    scalar, size = _STORED[array_type.dtype]
+    vector = ir.VectorType(scalar, lanes)
+    return builder.bitcast(builder.gep(array.data, [arguments[1]]), vector.as_pointer()), size
 
 
 @intrinsic
 def _quad_at(typing_context: Any, array: Any, position: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.load(_place(context, builder, signature, arguments), align=_ALIGNMENT)
+        pointer, alignment = place(context, builder, signature.args[0], arguments, LANES)
+        stored = builder.load(pointer, align=alignment)
+        return stored if stored.type == _VECTOR else builder.fpext(stored, _VECTOR)
 
     return QUAD(array, position), generate
 
@@ -69,7 +74,10 @@ def _quad_at(typing_context: Any, array: Any, position: Any) -> Any:
 @intrinsic
 def _put_quad(typing_context: Any, array: Any, position: Any, quad: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        builder.store(arguments[2], _place(context, builder, signature, arguments), align=_ALIGNMENT)
+        pointer, alignment = place(context, builder, signature.args[0], arguments, LANES)
+        vector = pointer.type.pointee
+        rounded = arguments[2] if vector == _VECTOR else builder.fptrunc(arguments[2], vector)
+        builder.store(rounded, pointer, align=alignment)
         return context.get_dummy_value()
 
     return types.void(array, position, QUAD), generate

@@ -30,6 +30,9 @@ class GridSection(Section):
     cell_size: float = Field(gt=0, description="edge of a square cell [m]; may be left to `accuracy`")
     lower: Corner = Field(default=(0.0, 0.0), description="lower left corner of the domain [m]")
     upper: Corner = Field(description="upper right corner of the domain [m]; a whole number of cells from `lower`")
+    precision: Literal["double", "single"] = Field(
+        default="double", description="of what is on the nodes; points are kept in double precision"
+    )
 
     @property
     def cells(self) -> tuple[int, int]:

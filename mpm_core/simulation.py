@@ -11,7 +11,7 @@ from mpm_core import momentum
 from mpm_core.basis import BASES
 from mpm_core.body import Body
 from mpm_core.body_force import BodyForce, scatter_body_force
-from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, join_periodic
+from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, is_wall_within, join_periodic
 from mpm_core.columns import LXX, LYY, X, Y
 from mpm_core.contact import Contact
 from mpm_core.elastic_energy import elastic_energy
@@ -98,12 +98,12 @@ class Simulation:
         self.basis = BASES[scene.transfer.basis]
         self.periodic_axes = _periodic_axes(scene)
         size = (scene.grid.lower, scene.grid.cells, scene.grid.cell_size)
-        self.grid = Grid(*size, self.periodic_axes, self.basis.wall_room)
+        self.grid = Grid(*size, self.periodic_axes, self.basis.wall_room, scene.grid.precision)
         self.fields = chosen_fields(scene.output.fields, [scene.law(section.material) for section in scene.body])
         self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
         started = time.perf_counter()
         for body in self.bodies:
-            body.choose_kernels(self.basis, scene.transfer.spreading)
+            body.choose_kernels(self.basis, scene.grid.precision, scene.transfer.spreading)
         initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
         self.walls = _walls(scene)
@@ -152,7 +152,7 @@ class Simulation:
         momentum.update_velocities(grid, self.reach, self.scene.gravity, kick)
         if tied > 0.0:
             momentum.average_surroundings(grid, self.reach)
-        for wall in self.walls:
+        for wall in (found for found in self.walls if is_wall_within(grid, found, self.window)):
             taken = hold_at_wall(grid, wall, self.window, self.contact.gaps(wall), dt)
             self.ledger.wall_work += taken.work
             self.ledger.wall_friction += taken.friction

@@ -61,7 +61,7 @@ class Sleep:
         self.started = settings.start - settings.window
         self.places = [np.full((2, body.count), np.inf) for body in bodies]
         self.withheld = np.zeros((*grid.shape, 2))
-        self.nodes = np.zeros(grid.nodes.shape)
+        self.nodes = grid.empty_nodes()
         self.reach = nothing_in_reach(grid)
         self.full = max(body.initial_density for body in bodies) * grid.cell_size**2
 

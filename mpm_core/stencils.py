@@ -48,13 +48,13 @@ def make_find_stencils(basis: Basis) -> Callable[..., Any]:
 
 
 @register_jitable(forceinline=True)
-def put_transposed(vectors, k, a, b, c, d):  # type: ignore[no-untyped-def]
-    """Store four components of four points, each point's side by side, from point k of a group on."""
+def put_transposed(vectors, position, stride, a, b, c, d):  # type: ignore[no-untyped-def]
+    """Store four components of four points: each point's side by side, from a position on, points a stride apart."""
     first, second, third, fourth = transposed(a, b, c, d)
-    put_quad(vectors, LANES * k, first)
-    put_quad(vectors, LANES * k + LANES, second)
-    put_quad(vectors, LANES * k + 2 * LANES, third)
-    put_quad(vectors, LANES * k + 3 * LANES, fourth)
+    put_quad(vectors, position, first)
+    put_quad(vectors, position + stride, second)
+    put_quad(vectors, position + 2 * stride, third)
+    put_quad(vectors, position + 3 * stride, fourth)
 
 
 @register_jitable(forceinline=True)

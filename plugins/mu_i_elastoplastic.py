@@ -9,7 +9,7 @@ Flow at constant volume leaves the trace of (1) to integrate exactly, p = K ln(r
 again, at the density rho_c where the pressure vanishes, so that grains may fly apart and come together without gain of
 volume. rho_c follows for each point from its initial pressure and density, so that the initial state is in equilibrium;
 the sets below start at the published critical density. Over a step, the plastic rate is the root of a quadratic
-(`plastic_shear_rate`, shared with `mu_i_lc`), as in the source.
+(`share_after_return`, shared with `mu_i_lc`), as in the source.
 
 `mu_i_lc` takes the elastic predictor from the same source. The two differ in what they are made to represent: there
 K_LC is the compression law of a fluid-like model, linear in density (the paper's Eq. 6); here K and nu are the
@@ -41,9 +41,9 @@ from materials import (
     hookimpl,
     isotropic,
     own_inertial_number_constant,
-    plastic_shear_rate,
     pressure,
     scaled,
+    share_after_return,
     shear_modulus,
     stress_ratio,
 )
@@ -93,7 +93,7 @@ def update(
     trial = added(deviator(stress), scaled(deviator(strain_rate), stiffness))
     trial_shear_stress = half_norm(trial)
     reference_rate = math.sqrt(new_pressure / parameters.grain_density) / parameters.grain_diameter
-    plastic_rate = plastic_shear_rate(
+    share = share_after_return(
         trial_shear_stress,
         new_pressure,
         stiffness,
@@ -101,8 +101,7 @@ def update(
         parameters.dynamic_friction,
         parameters.inertial_number_constant * reference_rate,
     )
-    remaining = max(0.0, trial_shear_stress - stiffness * plastic_rate)
-    return assembled_stress(new_pressure, scaled(trial, remaining / max(trial_shear_stress, 1e-300))), state
+    return assembled_stress(new_pressure, scaled(trial, share)), state
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

@@ -39,9 +39,9 @@ from materials import (
     flowing_wave_speed,
     half_norm,
     hookimpl,
-    plastic_shear_rate,
     pressure,
     scaled,
+    share_after_return,
     shear_modulus,
     stress_ratio,
 )
@@ -97,7 +97,7 @@ def update(
         parameters.grain_diameter * math.sqrt(parameters.grain_density)
     )
     reference_rate = rate_at_unit_pressure * math.sqrt(new_pressure)
-    plastic_rate = plastic_shear_rate(
+    share = share_after_return(
         trial_shear_stress,
         new_pressure,
         stiffness,
@@ -105,9 +105,7 @@ def update(
         parameters.dynamic_friction,
         reference_rate,
     )
-    remaining = trial_shear_stress - stiffness * plastic_rate
-    factor = max(0.0, remaining) / max(trial_shear_stress, 1e-300)
-    return assembled_stress(new_pressure, scaled(trial, factor if new_pressure > 0.0 else 0.0)), state
+    return assembled_stress(new_pressure, scaled(trial, share if new_pressure > 0.0 else 0.0)), state
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

@@ -35,11 +35,13 @@ class Setting:
     safety: float = 0.4
     scheme: str = "affine_flip"
     basis: str = "quadratic"
+    precision: str = "double"
 
     @property
     def key(self) -> str:
         """A name for files."""
-        words = (self.material, self.column, f"{self.cell_size:.6g}", f"{self.safety:g}", self.scheme, self.basis)
+        sizes = f"{self.cell_size:.6g}", f"{self.safety:g}"
+        words = (self.material, self.column, *sizes, self.scheme, self.basis, self.precision)
         return "-".join("".join(c for c in word if c.isalnum() or c in "._") for word in words)
 
     @property
@@ -48,6 +50,7 @@ class Setting:
         lower, upper = COLUMNS[self.column]
         return {
             "body.0.shape": {"kind": "rectangle", "lower": lower, "upper": upper},
+            "grid.precision": self.precision,
             "time.safety": self.safety,
             "transfer.scheme": self.scheme,
             "transfer.basis": self.basis,

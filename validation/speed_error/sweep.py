@@ -34,3 +34,4 @@ def _one_at_a_time(material: str, column: str, cell_size: float) -> Iterator[Set
     yield Setting(material, column, cell_size, scheme="apic")
     yield Setting(material, column, cell_size, basis="linear")
     yield Setting(material, column, cell_size, basis="cubic")
+    yield Setting(material, column, cell_size, precision="single")
