@@ -1,0 +1,38 @@
+"""The page of speed against error: what errors are counted against, the front, and the square whose answer is known."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from validation.speed_error.exact import ExactSetting, cost_and_error
+from validation.speed_error.front import error, mean_observables, pareto_front
+from validation.speed_error.setting import Outcome, Setting
+
+OUTCOME = Outcome(points=1, steps=1, cpu_time=1.0, runout=1.0, height=0.5, center=0.2, mark="")
+
+
+def test_errors_are_counted_against_a_mean_and_a_broken_run_counts_as_none():
+    exact = mean_observables([OUTCOME, replace(OUTCOME, runout=1.2)])
+    assert exact == {"runout": pytest.approx(1.1), "height": 0.5, "center": 0.2}
+    assert error(replace(OUTCOME, runout=1.1, height=0.45), exact) == pytest.approx(0.1)
+    assert math.isnan(error(None, exact))
+    assert math.isnan(mean_observables([OUTCOME, None])["runout"])
+
+
+def test_the_front_holds_what_nothing_cheaper_is_as_good_as():
+    costs = {"cheap": (1.0, 0.3), "beaten": (2.0, 0.3), "good": (3.0, 0.1), "dear": (4.0, 0.2)}
+    assert pareto_front(costs) == [("cheap", 1.0, 0.3), ("good", 3.0, 0.1)]
+
+
+def test_settings_of_different_precision_have_files_of_their_own():
+    keys = {Setting("MCC OCR 1", "paper", 0.05, precision=precision).key for precision in ("double", "single")}
+    assert len(keys) == 2
+
+
+def test_the_square_costs_more_and_errs_less_on_finer_cells():
+    coarse, fine = (cost_and_error(ExactSetting(cells, 4, 0.4, "affine_flip", "cubic", "single")) for cells in (8, 16))
+    assert coarse is not None
+    assert fine is not None
+    assert fine[1] < 0.4 * coarse[1]
+    assert fine[0] > 0.0
