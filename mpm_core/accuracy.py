@@ -29,6 +29,7 @@ class Preset:
 
 PRESETS: dict[str, dict[str, Preset]] = {
     "mu_i_lc": {"10%": Preset(12, 0.4), "3%": Preset(48, 0.4)},
+    "modified_cam_clay, normally consolidated": {"10%": Preset(48, 0.4)},
 }
 ACCURACIES = ("10%", "3%", "1%")
 
@@ -45,7 +46,7 @@ def with_settings_for_accuracy(content: Any) -> Any:
     width = _narrowest_width(content.get("body"))
     if not isinstance(grid, Mapping) or not isinstance(time, Mapping) or width is None:
         return content
-    preset = _strictest(content["accuracy"], _laws(content))
+    preset = _strictest(content["accuracy"], _kinds(content))
     cell_size = grid.get("cell_size") or _cell_size(grid, width / preset.cells_across)
     return {
         **content,
@@ -54,22 +55,28 @@ def with_settings_for_accuracy(content: Any) -> Any:
     }
 
 
-def _laws(content: Mapping[str, Any]) -> list[str]:
-    """Names of the laws of a scene's materials."""
+def _kinds(content: Mapping[str, Any]) -> list[str]:
+    """Of each material of a scene the name of its law, and whether it is normally consolidated.
+
+    Overconsolidated clay softens as it fails: its runout depends on the cell size however small that is.
+    """
     materials = content.get("material")
     if not isinstance(materials, Mapping):
         return []
-    return [str(table.get("law", name)) for name, table in materials.items() if isinstance(table, Mapping)]
+    tables = {name: table for name, table in materials.items() if isinstance(table, Mapping)}
+    consolidated = {name: table.get("overconsolidation_ratio") == 1.0 for name, table in tables.items()}
+    laws = {name: str(table.get("law", name)) for name, table in tables.items()}
+    return [f"{law}, normally consolidated" if consolidated[name] else law for name, law in laws.items()]
 
 
-def _strictest(accuracy: str, laws: Iterable[str]) -> Preset:
-    """The preset that serves all laws."""
+def _strictest(accuracy: str, kinds: Iterable[str]) -> Preset:
+    """The preset that serves all materials."""
     presets = []
-    for law in laws:
-        reached = PRESETS.get(law, {})
+    for kind in kinds:
+        reached = PRESETS.get(kind, {})
         if accuracy not in reached:
             allowed = f"allowed: {', '.join(reached)}" if reached else "state grid.cell_size and time.safety instead"
-            raise ValueError(f"accuracy = '{accuracy}' was not reached on any grid with law '{law}'; {allowed}")
+            raise ValueError(f"accuracy = '{accuracy}' was not reached on any grid with {kind}; {allowed}")
         presets.append(reached[accuracy])
     return Preset(max(found.cells_across for found in presets), min(found.safety for found in presets))
 

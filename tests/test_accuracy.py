@@ -6,6 +6,8 @@ from scenes_for_tests import CAM_CLAY, COLUMN, changed
 from materials import InputError
 from mpm_core import Scene
 
+SOFTENING = {**CAM_CLAY, "overconsolidation_ratio": 4.0}
+
 
 def test_it_sets_what_the_scene_leaves_open():
     scene = Scene.from_dict(changed(COLUMN, {"accuracy": "10%", "grid.cell_size": None}))
@@ -14,13 +16,19 @@ def test_it_sets_what_the_scene_leaves_open():
     assert (stated.grid.cell_size, stated.time.safety) == (0.025, 0.2)
 
 
+def test_normally_consolidated_clay_has_settings_of_its_own():
+    clay = {"material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"}
+    scene = Scene.from_dict(changed(COLUMN, {**clay, "accuracy": "10%", "grid.cell_size": None}))
+    assert scene.grid.cell_size == pytest.approx(0.3 / 48)
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"accuracy": "1%"}, "not reached on any grid with law 'mu_i_lc'; allowed: 10%, 3%"),
+        ({"accuracy": "1%"}, "not reached on any grid with mu_i_lc; allowed: 10%, 3%"),
         (
-            {"accuracy": "10%", "material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"},
-            "state grid.cell_size and time.safety instead",
+            {"accuracy": "10%", "material": {"modified_cam_clay": SOFTENING}, "body.0.material": "modified_cam_clay"},
+            "with modified_cam_clay; state grid.cell_size and time.safety instead",
         ),
         ({"accuracy": "10%", "grid.cell_size": None, "grid.upper": [3.1, 1.037]}, "divide the domain"),
     ],
