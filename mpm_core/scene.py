@@ -204,7 +204,7 @@ class Scene(Section):
     accuracy: Literal["10%", "3%", "1%"] | None = Field(
         default=None,
         description="sets grid.cell_size and time.safety where the scene does not, to what kept runout, height and "
-        "centre of mass of column collapses within this of a finer grid",
+        "centre of mass of column collapses within this of finer grids",
     )
     gravity: Corner = Field(default=(0.0, -9.81), description="gravity vector [m/s2]")
     grid: GridSection
