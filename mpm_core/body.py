@@ -10,8 +10,8 @@ from materials import InputError, SymmetricTensor
 from materials.compilation import explained, pointwise_law
 from materials.law import Law
 from mpm_core.basis import Basis
-from mpm_core.columns import AFFINE, DENSITY, FIRST_STATE, GRADIENT, NAMES, SXX, SXY, SYY, SZZ, VX, VY, X, Y, allocate
-from mpm_core.grid import Grid, Window
+from mpm_core.columns import AFFINE, DENSITY, FIRST_STATE, GRADIENT, NAMES, SXX, SXY, SYY, SZZ, VX, VY, X, Y
+from mpm_core.grid import Grid
 from mpm_core.grid_to_points import BLOCK, make_grid_to_points
 from mpm_core.grid_to_points import REPORTS as TRANSFER_REPORTS
 from mpm_core.points_to_grid import make_points_to_grid
@@ -25,10 +25,11 @@ POINTS_AT_ONCE = 2**18
 
 
 class Body:
-    """Points as rows of `points`, shape (columns, n); `ids` gives each point's number in the order of generation.
+    """Points as `points`, shape (columns, n); `ids` gives each point's number in the order of generation.
 
-    The first `awake` points take part in steps, and `rows` are those of them; the rest sleeps (`sleeping`). While any
-    sleeps, `signal_speed_asleep` [m/s] is no less than that of each of them.
+    Compiled code takes the `storage` of the points, whose rows are a little longer. The first `awake` points take part
+    in steps; the rest sleeps (`sleeping`). While any sleeps, `signal_speed_asleep` [m/s] is no less than that of each
+    of them.
     """
 
     def __init__(
@@ -36,22 +37,24 @@ class Body:
         name: str,
         law: Law,
         parameters: Any,
-        points: NDArray[np.float64],
+        storage: NDArray[np.float64],
+        count: int,
         point_mass: float,
         first_id: int,
     ) -> None:
         self.name = name
         self.law = law
         self.parameters = parameters
-        self.points = points
+        self.storage = storage
+        self.points = storage[:, :count]
         self.point_mass = point_mass
-        self.initial_density = float(points[DENSITY, 0])
+        self.initial_density = float(storage[DENSITY, 0])
         self.first_id = first_id
-        self.ids = np.arange(first_id, first_id + points.shape[1], dtype=np.int32)
+        self.ids = np.arange(first_id, first_id + count, dtype=np.int32)
         self.stripe_starts = np.zeros(1, np.int64)
         self.shares = (np.zeros(1, np.int64), np.zeros(1, np.int64))
         self.signal_speed_asleep = 0.0
-        self.set_awake(points.shape[1])
+        self.set_awake(count)
         self._points_to_grid: Callable[..., Any]
         self._grid_to_points: Callable[..., Any]
         self._tying_grid_to_points: Callable[..., Any]
@@ -65,15 +68,19 @@ class Body:
     def set_awake(self, awake: int) -> None:
         """Let the first `awake` points take part in steps."""
         self.awake = awake
-        self.rows = tuple(self.points[:, :awake])
         blocks = -(-awake // BLOCK)
         self.transfer_reports = np.zeros((blocks, TRANSFER_REPORTS))
         self.stress_reports = np.zeros((blocks, STRESS_REPORTS))
 
     @property
-    def sleeping_rows(self) -> tuple[NDArray[np.float64], ...]:
-        """The rows of `points`, of those that sleep."""
-        return tuple(self.points[:, self.awake :])
+    def points_awake(self) -> NDArray[np.float64]:
+        """Those of `points` that take part in steps."""
+        return self.points[:, : self.awake]
+
+    @property
+    def points_asleep(self) -> NDArray[np.float64]:
+        """Those of `points` that sleep."""
+        return self.points[:, self.awake :]
 
     @property
     def is_loose(self) -> bool:
@@ -106,8 +113,8 @@ class Body:
         self._grid_to_points = make_grid_to_points(basis, ties=False, spreads=False)
         self._tying_grid_to_points = make_grid_to_points(basis, ties, spreads and ties)
         self._stress_pass = make_stress_pass(pointwise_law(self.law), self._keeps_shear_strain)
-        nothing, parameters = tuple(allocate(self.points.shape[0], 0)), tuple(self.parameters)
-        explained(self.law, self._stress_pass, nothing, 1.0, parameters, 0.0, 0.0, 0.0, self.stress_reports[:0])
+        no_points, parameters = (self.storage, 0), tuple(self.parameters)
+        explained(self.law, self._stress_pass, *no_points, 1.0, parameters, 0.0, 0.0, 0.0, self.stress_reports[:0])
 
     @property
     def velocities(self) -> NDArray[np.float64]:
@@ -125,15 +132,10 @@ class Body:
                 fastest = max(fastest, self.law.sound_speed(stress, density, self.law.state(*state), self.parameters))
         return fastest + float(np.sqrt((self.velocities**2).sum(axis=0).max()))
 
-    def corners(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Lower and upper corner of the bounding box of the points that are awake [m]."""
-        x, y = self.rows[X], self.rows[Y]
-        return (float(x.min()), float(y.min())), (float(x.max()), float(y.max()))
-
-    def sort(self, grid: Grid, basis: Basis, window: Window, threads: int) -> None:
+    def sort(self, grid: Grid, basis: Basis, threads: int) -> None:
         """Bring the points that are awake into the order of their stencils and cut them into stripes."""
-        points, ids = self.points[:, : self.awake], self.ids[: self.awake]
-        order, self.stripe_starts = sort_by_stencil(points, grid.origin, grid.cell_size, basis.offset, window)
+        points, ids = self.points_awake, self.ids[: self.awake]
+        order, self.stripe_starts = sort_by_stencil(points, grid.origin, grid.cell_size, basis.offset)
         reorder(points, ids, order)
         self.share_between(threads)
 
@@ -158,25 +160,23 @@ class Body:
 
     def to_grid(self, grid: Grid) -> None:
         """Scatter mass, momentum and internal force of the points that are awake."""
-        self._scatter(self.rows, self.stripe_starts, self.shares, grid.nodes, grid)
+        self._scatter(self.stripe_starts, self.shares, grid.nodes, grid)
 
     def sleepers_to_grid(self, nodes: NDArray[np.float64], grid: Grid) -> None:
         """Scatter what the sleeping points bring to nodes of their own, in the order in which they lie."""
-        rows = self.sleeping_rows
         # A single stripe, to one thread: nobody waits for it.
-        stripe_starts = np.array([0, len(rows[X])])
-        self._scatter(rows, stripe_starts, balanced_shares(stripe_starts, 1), nodes, grid)
+        stripe_starts = np.array([self.awake, self.count])
+        self._scatter(stripe_starts, balanced_shares(stripe_starts, 1), nodes, grid)
 
     def _scatter(
         self,
-        rows: tuple[NDArray[np.float64], ...],
         stripe_starts: NDArray[np.int64],
         shares: tuple[NDArray[np.int64], NDArray[np.int64]],
         nodes: NDArray[np.float64],
         grid: Grid,
     ) -> None:
         self._points_to_grid(
-            rows,
+            self.storage,
             self.point_mass,
             stripe_starts,
             shares,
@@ -191,7 +191,8 @@ class Body:
         """Gather velocity and its gradient, and where volumes are to be tied what that needs; move the points."""
         transfer = self._tying_grid_to_points if ties else self._grid_to_points
         transfer(
-            self.rows,
+            self.storage,
+            self.awake,
             self.point_mass,
             grid.nodes,
             grid.shape[1],
@@ -215,7 +216,8 @@ class Body:
         the time constant of the transfer.
         """
         tied, parameters = tied if self.is_loose else 0.0, tuple(self.parameters)
-        self._stress_pass(self.rows, self.point_mass, parameters, dt, tied, exchange, self.stress_reports)
+        points = self.storage, self.awake
+        self._stress_pass(*points, self.point_mass, parameters, dt, tied, exchange, self.stress_reports)
 
     def state(self, name: str) -> NDArray[np.float64]:
         """A state variable of all points, in their present order. Raises InputError for an unknown name."""

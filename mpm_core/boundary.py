@@ -13,7 +13,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from materials.compilation import named
-from mpm_core.grid import COMPONENTS, GHOSTS, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, Grid, Window
+from mpm_core.grid import COMPONENTS, GHOSTS, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, Grid
+from mpm_core.reach import Reach
 from mpm_core.sources import CORE_MARK
 
 
@@ -66,14 +67,16 @@ def row_of_wall(grid: Grid, wall: Wall) -> int:
     return GHOSTS if wall.is_lower else grid.cells[wall.axis] + GHOSTS
 
 
-def is_wall_within(grid: Grid, wall: Wall, window: Window) -> bool:
-    """Whether the row of nodes on a wall passes through a window."""
+def is_in_reach(grid: Grid, wall: Wall, reach: Reach) -> bool:
+    """Whether the row of nodes on a wall has any in reach."""
     row = row_of_wall(grid, wall)
-    return window.first_x <= row <= window.last_x if wall.axis == 0 else window.first_y <= row <= window.last_y
+    return (
+        reach.first_column <= row <= reach.last_column if wall.axis == 0 else reach.first_row <= row <= reach.last_row
+    )
 
 
-def hold_at_wall(grid: Grid, wall: Wall, window: Window, gaps: NDArray[np.float64], dt: float) -> TakenByWall:
-    """Apply a wall within a window to the new velocities of its row of nodes. Returns the energies that the wall takes.
+def hold_at_wall(grid: Grid, wall: Wall, reach: Reach, gaps: NDArray[np.float64], dt: float) -> TakenByWall:
+    """Apply a wall in reach to the new velocities of its row of nodes. Returns the energies that the wall takes.
 
     A node of a friction wall comes no closer in a step of dt [s] than its gap [m] (`contact`).
 
@@ -81,7 +84,7 @@ def hold_at_wall(grid: Grid, wall: Wall, window: Window, gaps: NDArray[np.float6
     as the tangential impulse of a friction wall times the mean sliding velocity.
     """
     other = 1 - wall.axis
-    first, last = (window.first_y, window.last_y) if other == 1 else (window.first_x, window.last_x)
+    first, last = (reach.first_row, reach.last_row) if other == 1 else (reach.first_column, reach.last_column)
     start = row_of_wall(grid, wall) * grid.strides[wall.axis] + first * grid.strides[other]
     count = last - first + 1
     sign = 1.0 if wall.is_lower else -1.0

@@ -30,10 +30,10 @@ DOUBLES_PER_CACHE_LINE = 8
 
 
 def allocate(columns: int, points: int) -> NDArray[np.float64]:
-    """A zeroed (columns, points) array whose rows do not fall on the same cache sets.
+    """Zeroed rows for some points, in whole cache lines, that do not fall on the same cache sets.
 
     Rows a multiple of 4096 bytes apart would evict one another; an odd number of cache lines between them cannot.
     """
     lines = -(-points // DOUBLES_PER_CACHE_LINE)
     lines += 1 - lines % 2
-    return np.zeros((columns, lines * DOUBLES_PER_CACHE_LINE))[:, :points]
+    return np.zeros((columns, lines * DOUBLES_PER_CACHE_LINE))

@@ -1,7 +1,6 @@
-"""The background grid: one flat array of nodes, of which only the window around the material is ever touched."""
+"""The background grid: one flat array of nodes, of which only those around the material are ever touched."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -28,16 +27,6 @@ PRECISIONS: dict[str, type[np.floating[Any]]] = {"double": np.float64, "single":
 GHOSTS = 2
 # Ghosts that no stencil reaches, for axes without walls.
 NO_GHOSTS = (-1, 2**31 - 1)
-
-
-@dataclass(frozen=True)
-class Window:
-    """Inclusive ranges of node indices along x and y."""
-
-    first_x: int
-    last_x: int
-    first_y: int
-    last_y: int
 
 
 class Grid:
@@ -90,12 +79,6 @@ class Grid:
                 rooms[wall] -= 1.0 - wall_room
                 rooms[inside] += 0.5 - wall_room
         return rooms
-
-    def window(self, lower: tuple[float, float], upper: tuple[float, float], offset: float, width: int) -> Window:
-        """The nodes that points between two corners [m] reach with a stencil of the given offset and width."""
-        first = [int((lower[axis] - self.origin[axis]) / self.cell_size - offset) for axis in (0, 1)]
-        last = [int((upper[axis] - self.origin[axis]) / self.cell_size - offset) + width - 1 for axis in (0, 1)]
-        return Window(first[0], last[0], first[1], last[1])
 
 
 def _aligned_zeros(count: int, number: type[np.floating[Any]]) -> NDArray[Any]:

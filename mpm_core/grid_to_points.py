@@ -43,6 +43,7 @@ from mpm_core.quads import (
     total,
     where_equal,
 )
+from mpm_core.rows import OF_EVERY_LAW, rows_of
 from mpm_core.sources import CORE_MARK
 from mpm_core.stencils import GROUP, four_transposed, make_find_stencils
 from mpm_core.volumes import spreading_rate
@@ -291,15 +292,15 @@ def make_grid_to_points(basis: Basis, ties: bool, spreads: bool) -> Callable[...
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{basis.name}_{ties:d}{spreads:d}_{CORE_MARK}")
     def grid_to_points(  # type: ignore[no-untyped-def]
-        rows, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, memory, reports
+        storage, count, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, memory, reports
     ):
-        points, inverse_size = len(rows[X]), 1.0 / cell_size
+        rows, inverse_size = rows_of(storage, OF_EVERY_LAW), 1.0 / cell_size
         for block in prange(reports.shape[0]):
             receiving, room = room_for_receiving(), np.empty((7, GROUP * LANES))
             velocities, bulk = Gathered(room[0], room[1], room[2]), Gathered(room[3], room[4], room[5])
             energies, sums = room[6], no_sums()
-            for start in range(block * BLOCK, min(points, (block + 1) * BLOCK), GROUP):
-                first, last = np.uint64(start), np.uint64(min(start + GROUP, points))
+            for start in range(block * BLOCK, min(count, (block + 1) * BLOCK), GROUP):
+                first, last = np.uint64(start), np.uint64(min(start + GROUP, count))
                 for p in range(first, last, LANES):
                     put_receiving(rows, p, p - first, nodes_y, ghosts, origin, inverse_size, receiving)
                 gather_velocities(last - first, nodes, nodes_y, receiving, velocities)

@@ -62,7 +62,8 @@ def _build(
 ) -> Body:
     law = scene.law(section.material)
     parameters = scene.parameters(section.material)
-    points = allocate(FIRST_STATE + len(law.state._fields) + keeps_shear_strain, len(positions))
+    storage = allocate(FIRST_STATE + len(law.state._fields) + keeps_shear_strain, len(positions))
+    points = storage[:, : len(positions)]
     points[X], points[Y] = positions.T
     points[VX], points[VY] = section.velocity
     points[DENSITY] = section.density
@@ -70,7 +71,7 @@ def _build(
     weight = -section.density * scene.gravity[1]
     points[SXX], points[SYY], points[SZZ] = _initial_stress(section.initial_stress, positions, spacing, weight)
     _initialise_state(law, parameters, points)
-    return Body(name, law, parameters, points, section.density * spacing**2, first_id)
+    return Body(name, law, parameters, storage, len(positions), section.density * spacing**2, first_id)
 
 
 def _initial_stress(

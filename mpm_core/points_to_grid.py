@@ -30,6 +30,7 @@ from mpm_core.basis import Basis
 from mpm_core.columns import AXX, AXY, AYX, AYY, DENSITY, SXX, SXY, SYY, SZZ, VX, VY
 from mpm_core.grid import BULK, COMPONENTS, PRECISIONS
 from mpm_core.quads import LANES, filled, put_quad, quad_at
+from mpm_core.rows import OF_EVERY_LAW, rows_of
 from mpm_core.scatter import make_scatter
 from mpm_core.sources import CORE_MARK
 from mpm_core.stencils import GROUP, make_find_stencils, put_transposed
@@ -106,9 +107,9 @@ def make_points_to_grid(basis: Basis, precision: str) -> Callable[..., Any]:
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{basis.name}_{precision}_{CORE_MARK}")
     def points_to_grid(  # type: ignore[no-untyped-def]
-        rows, point_mass, stripe_starts, shares, nodes, nodes_y, ghosts, origin, cell_size
+        storage, point_mass, stripe_starts, shares, nodes, nodes_y, ghosts, origin, cell_size
     ):
-        inverse_size = 1.0 / cell_size
+        rows, inverse_size = rows_of(storage, OF_EVERY_LAW), 1.0 / cell_size
         for shares_of_parity in shares:
             for share in prange(len(shares_of_parity) - 1):
                 steps = np.empty((2, GROUP * LANES), number)

@@ -22,14 +22,17 @@ DRIFT = 1
 
 
 class Reach(NamedTuple):
-    """The nodes in reach; where there are none, the last lies before the first.
+    """The nodes in reach, all limits inclusive; where there are none, the last lies before the first.
 
-    first_column, last_column  of all columns of nodes that have any, inclusive
-    first_rows, last_rows      in each column of the grid, inclusive
+    first_column, last_column  of the columns of nodes that have any
+    first_row, last_row        of the rows that have any
+    first_rows, last_rows      in each column of the grid
     """
 
     first_column: int
     last_column: int
+    first_row: int
+    last_row: int
     first_rows: NDArray[np.int64]
     last_rows: NDArray[np.int64]
 
@@ -47,19 +50,17 @@ def nothing_in_reach(grid: Grid) -> Reach:
 def _between(first_rows: NDArray[np.int64], last_rows: NDArray[np.int64]) -> Reach:
     columns = np.flatnonzero(last_rows >= first_rows)
     first, last = (int(columns[0]), int(columns[-1])) if len(columns) > 0 else (0, -1)
-    return Reach(first, last, first_rows, last_rows)
+    return Reach(first, last, int(first_rows.min()), int(last_rows.max()), first_rows, last_rows)
 
 
-def reach_of(
-    groups: Sequence[Sequence[NDArray[np.float64]]], grid: Grid, basis: Basis, periodic_axes: Sequence[int]
-) -> Reach:
+def reach_of(groups: Sequence[NDArray[np.float64]], grid: Grid, basis: Basis, periodic_axes: Sequence[int]) -> Reach:
     """The nodes that groups of points reach until they have drifted; all of them along a periodic axis.
 
-    A group is the rows of its points, as in `Body.points`.
+    A group is an array of points like `Body.points`.
     """
-    _, _, first, last = nothing_in_reach(grid)
-    for rows in groups:
-        _extend(rows[X], rows[Y], grid.origin, grid.cell_size, basis.offset, basis.width, first, last)
+    *_, first, last = nothing_in_reach(grid)
+    for points in groups:
+        _extend(points[X], points[Y], grid.origin, grid.cell_size, basis.offset, basis.width, first, last)
     np.clip(first, 0, grid.shape[1], out=first)
     np.clip(last, -1, grid.shape[1] - 1, out=last)
     if 0 in periodic_axes:

@@ -2,7 +2,7 @@
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,12 +11,12 @@ from mpm_core import momentum
 from mpm_core.basis import BASES
 from mpm_core.body import Body
 from mpm_core.body_force import BodyForce, scatter_body_force
-from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, is_wall_within, join_periodic
+from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, is_in_reach, join_periodic
 from mpm_core.columns import LXX, LYY, X, Y
 from mpm_core.contact import Contact
 from mpm_core.elastic_energy import elastic_energy
 from mpm_core.fields import chosen_fields
-from mpm_core.grid import Grid, Window
+from mpm_core.grid import Grid
 from mpm_core.held_nodes import hold_nodes
 from mpm_core.initial import build_bodies
 from mpm_core.reach import nothing_in_reach, reach_of
@@ -114,9 +114,8 @@ class Simulation:
         self.steps = 0
         self.drift = math.inf
         self.reach = nothing_in_reach(self.grid)
+        self.walls_in_reach: list[Wall] = []
         self.contact = Contact((), (), self.grid, self.basis, self.periodic_axes)
-        self.window = Window(0, 0, 0, 0)
-        self._find_window()
         kinetic = sum(0.5 * body.point_mass * float((body.velocities**2).sum()) for body in self.bodies)
         self.ledger = Ledger(kinetic, kinetic, initial_elastic)
         self.sleep = self._sleep()
@@ -152,8 +151,8 @@ class Simulation:
         momentum.update_velocities(grid, self.reach, self.scene.gravity, kick)
         if tied > 0.0:
             momentum.average_surroundings(grid, self.reach)
-        for wall in (found for found in self.walls if is_wall_within(grid, found, self.window)):
-            taken = hold_at_wall(grid, wall, self.window, self.contact.gaps(wall), dt)
+        for wall in self.walls_in_reach:
+            taken = hold_at_wall(grid, wall, self.reach, self.contact.gaps(wall), dt)
             self.ledger.wall_work += taken.work
             self.ledger.wall_friction += taken.friction
         hold_nodes(grid, self.held_nodes)
@@ -217,7 +216,7 @@ class Simulation:
         for body in self.bodies:
             for axis in self.periodic_axes:
                 body.wrap(axis, self.grid.lower[axis], self.grid.upper[axis] - self.grid.lower[axis])
-            body.sort(self.grid, self.basis, self.window, self.threads)
+            body.sort(self.grid, self.basis, self.threads)
         self.drift = 0.0
         self.find_reach()
 
@@ -232,15 +231,15 @@ class Simulation:
         # The reports of this step, of which the sleepers' signal speed is taken, serve one division.
         fell = not woke and self.body_force is None and sleep.fall_asleep(self.time)
         if woke or fell:
-            self._find_window()
             self._sort()
             sleep.bring_sleepers()
 
     def find_reach(self) -> None:
         """Find the nodes that what is awake can reach until the next sort, and leave zeros everywhere else."""
         momentum.clear(self.grid.nodes, self.grid, self.reach)
-        self.reach = reach_of([body.rows for body in self.bodies], self.grid, self.basis, self.periodic_axes)
-        self.contact = Contact(self.walls, self.bodies, self.grid, self.basis, self.periodic_axes)
+        self.reach = reach_of([body.points_awake for body in self.bodies], self.grid, self.basis, self.periodic_axes)
+        self.walls_in_reach = [wall for wall in self.walls if is_in_reach(self.grid, wall, self.reach)]
+        self.contact = Contact(self.walls_in_reach, self.bodies, self.grid, self.basis, self.periodic_axes)
 
     def _take_reports(self, dt: float) -> None:
         reports = [step_report(body.transfer_reports, body.stress_reports) for body in self.bodies]
@@ -250,8 +249,6 @@ class Simulation:
         lower = (min(report.lowest_x for report in reports), min(report.lowest_y for report in reports))
         upper = (max(report.highest_x for report in reports), max(report.highest_y for report in reports))
         self._refuse_lost_points(lower, upper)
-        if any(body.awake > 0 for body in self.bodies):
-            self.window = self._window_of(lower, upper)
         self.drift += dt * max(report.fastest for report in reports)
         self.strain_rate = max(report.increment for report in reports) / dt
         signals = [
@@ -265,22 +262,6 @@ class Simulation:
             risen=-dt * sum(gravity_x * report.moved_x + gravity_y * report.moved_y for report in reports),
             worked=sum(report.internal_work for report in reports),
         )
-
-    def _find_window(self) -> None:
-        """Take the window from the points that are awake, if any are."""
-        corners = [body.corners() for body in self.bodies if body.awake > 0]
-        if corners:
-            lower, upper = np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]
-            self.window = self._window_of((lower[0], lower[1]), (upper[0], upper[1]))
-
-    def _window_of(self, lower: tuple[float, float], upper: tuple[float, float]) -> Window:
-        """The nodes in reach of points between two corners; all nodes along a periodic axis."""
-        window = self.grid.window(lower, upper, self.basis.offset, self.basis.width)
-        if 0 in self.periodic_axes:
-            window = replace(window, first_x=0, last_x=self.grid.shape[0] - 1)
-        if 1 in self.periodic_axes:
-            window = replace(window, first_y=0, last_y=self.grid.shape[1] - 1)
-        return window
 
     def _at_least_free_fall(self, speed: float) -> float:
         """A signal speed no less than that of a fall through one cell, for material without stiffness."""

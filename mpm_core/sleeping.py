@@ -96,7 +96,7 @@ class Sleep:
         self.withheld[stirred] = 0.0
         woke = False
         for body in self.bodies:
-            wakes = self._touched(body.sleeping_rows, stirred)
+            wakes = self._touched(body.points_asleep, stirred)
             if wakes.any():
                 body.divide(np.concatenate([np.zeros(body.awake, np.bool_), ~wakes]))
                 woke = True
@@ -113,7 +113,9 @@ class Sleep:
             _stir_points(*body.points[[X, Y]][:, displaced], *self._stencil(), stirred)
         fell = False
         for body in self.bodies:
-            sleeps = np.concatenate([~self._touched(body.rows, stirred), np.ones(body.count - body.awake, np.bool_)])
+            sleeps = np.concatenate(
+                [~self._touched(body.points_awake, stirred), np.ones(body.count - body.awake, np.bool_)]
+            )
             if np.count_nonzero(sleeps) >= body.count - body.awake + LANES:
                 body.divide(sleeps)
                 fell = True
@@ -123,13 +125,13 @@ class Sleep:
     def bring_sleepers(self) -> None:
         """Scatter anew what the sleeping points bring, after some woke or fell asleep."""
         clear(self.nodes, self.grid, self.reach)
-        self.reach = reach_of([body.sleeping_rows for body in self.bodies], self.grid, self.basis, ())
+        self.reach = reach_of([body.points_asleep for body in self.bodies], self.grid, self.basis, ())
         for body in self.bodies:
             body.sleepers_to_grid(self.nodes, self.grid)
 
-    def _touched(self, rows: Sequence[NDArray[np.float64]], stirred: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    def _touched(self, points: NDArray[np.float64], stirred: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Whether any node of each point is marked."""
-        touched: NDArray[np.bool_] = _touched(rows[X], rows[Y], *self._stencil(), stirred)
+        touched: NDArray[np.bool_] = _touched(points[X], points[Y], *self._stencil(), stirred)
         return touched
 
     def _stencil(self) -> tuple[tuple[float, float], float, float, int]:

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from materials.compilation import named
 from mpm_core.columns import X, Y
-from mpm_core.grid import Window
 from mpm_core.sources import CORE_MARK
 
 # One more than the nodes of the widest stencil: the narrower, the more evenly threads share them.
@@ -20,24 +19,32 @@ LONGEST_DRIFT = 0.9
 
 
 def sort_by_stencil(
-    points: NDArray[np.float64], origin: tuple[float, float], cell_size: float, offset: float, window: Window
+    points: NDArray[np.float64], origin: tuple[float, float], cell_size: float, offset: float
 ) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
     """The stable order of points by column and row of their stencil, and the first point of each stripe.
 
     Orders are kept in 32 bits, as ids are: with many points they are what memory peaks with.
     """
-    columns = window.last_x - window.first_x + 1
-    rows = window.last_y - window.first_y + 1
-    return _counting_sort(points, *origin, cell_size, offset, window.first_x, window.first_y, columns, rows)
+    if points.shape[1] == 0:
+        return np.empty(0, np.int32), np.zeros(1, np.int64)
+    return _counting_sort(points, *origin, cell_size, offset)
 
 
 @njit(cache=True)
 @named(CORE_MARK)
-def _counting_sort(  # type: ignore[no-untyped-def]
-    points, origin_x, origin_y, cell_size, offset, first_x, first_y, columns, rows
-):
+def _limits(places, origin, cell_size, offset):  # type: ignore[no-untyped-def]
+    """The first of the first nodes along an axis, and the number of those from it to the last."""
+    first = int((places.min() - origin) / cell_size - offset)
+    return first, int((places.max() - origin) / cell_size - offset) - first + 1
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def _counting_sort(points, origin_x, origin_y, cell_size, offset):  # type: ignore[no-untyped-def]
     count = points.shape[1]
     x, y = points[X], points[Y]
+    first_x, columns = _limits(x, origin_x, cell_size, offset)
+    first_y, rows = _limits(y, origin_y, cell_size, offset)
     keys = np.empty(count, np.int32)
     starts = np.zeros(columns * rows + 1, np.int64)
     for p in range(count):
@@ -68,10 +75,11 @@ def reorder(points: NDArray[np.float64], ids: NDArray[np.int32], order: NDArray[
 @named(CORE_MARK)
 def _reorder(points, order):  # type: ignore[no-untyped-def]
     for column in prange(points.shape[0]):
-        found = np.empty(len(order))
+        row, found = points[column], np.empty(len(order))
         for p in range(len(order)):
-            found[p] = points[column, order[p]]
-        points[column] = found
+            # unsigned, so that nothing is done for numbers that count from the end
+            found[p] = row[np.uint64(order[p])]
+        row[:] = found
 
 
 def balanced_shares(stripe_starts: NDArray[np.int64], threads: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

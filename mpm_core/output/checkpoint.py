@@ -2,13 +2,10 @@
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 import h5py
-import numpy as np
 
 from materials import InputError
-from mpm_core.grid import Window
 from mpm_core.output import atomic
 from mpm_core.simulation import Ledger, Simulation
 
@@ -36,7 +33,7 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
     }
     with atomic.replacing(folder / CHECKPOINT_NAME) as partial, h5py.File(partial, "w") as file:
         file.attrs.update(scalars)
-        for name, part in (("clock", clock), ("ledger", simulation.ledger), ("window", simulation.window)):
+        for name, part in (("clock", clock), ("ledger", simulation.ledger)):
             file.create_group(name).attrs.update(asdict(part))
         for number, body in enumerate(simulation.bodies):
             group = file.create_group(f"body/{number}")
@@ -93,12 +90,7 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     simulation.last_step = float(file.attrs["last_step"])
     simulation.signal_speed = float(file.attrs["signal_speed"])
     simulation.strain_rate = float(file.attrs["strain_rate"])
-    simulation.window = Window(**_numbers(file["window"], int))
     simulation.find_reach()
-    simulation.ledger = Ledger(**_numbers(file["ledger"], float))
+    simulation.ledger = Ledger(**{name: float(value) for name, value in file["ledger"].attrs.items()})
     clock = file["clock"].attrs
     return Clock(int(clock["next_frame"]), int(clock["next_history"]), float(clock["wall_time"]))
-
-
-def _numbers(group: h5py.Group, kind: type) -> dict[str, Any]:
-    return {name: kind(np.asarray(value).item()) for name, value in group.attrs.items()}

@@ -104,7 +104,8 @@ def ring(cells: int, points_across_cell: int, angle: float) -> Simulation:
     like = simulation.bodies[0]
     places = circles(cells, points_across_cell)
     count = places.shape[1]
-    points = allocate(like.points.shape[0], count)
+    storage = allocate(like.points.shape[0], count)
+    points = storage[:, :count]
     points[:] = like.points[:, :1]
     points[[X, Y]] = places
     points[GRADIENT] = points[AFFINE] = velocity_gradient_at_start(places, angle)
@@ -112,8 +113,8 @@ def ring(cells: int, points_across_cell: int, angle: float) -> Simulation:
     turn = swing(angle, 0.0)[1] * profile(radius)[0]
     points[[VX, VY]] = turn * np.array([-places[1], places[0]])
     mass = DENSITY * math.pi * (OUTER**2 - INNER**2) / count
-    body = Body("ring", like.law, like.parameters, points, mass, first_id=0)
-    body.choose_kernels(simulation.basis, spreads=False)
+    body = Body("ring", like.law, like.parameters, storage, count, mass, first_id=0)
+    body.choose_kernels(simulation.basis, simulation.grid.precision, spreads=False)
     simulation.bodies = [body]
     simulation.measure_signals()
     simulation.held_nodes = nodes_where(simulation.grid, _is_outside)

@@ -65,9 +65,6 @@ def stops_with_its_place() -> Measurement:
 def _with_a_point_beyond() -> Simulation:
     simulation = simulation_of(scene(CELL[Effort.QUICK], "free_slip", (0.0, 0.0)))
     simulation.bodies[0].points[X, 0] = BEYOND
-    simulation.window = simulation.grid.window(
-        (0.3, 0.3), (BEYOND, 0.7), simulation.basis.offset, simulation.basis.width
-    )
     return simulation
 
 
