@@ -24,9 +24,10 @@ LARGEST_FACTOR = 4
 FEWEST_POINTS = 1000
 # Processor time [s] of this thread after which a rehearsal stops where it is.
 PATIENCE = 8.0
-# The first steps compile or load kernels and sort the points. Then the cost of a step is the median of so many: on a
-# busy machine a few of them take much longer than the others.
-FIRST_STEPS, STEPS_OF_MEDIAN = 2, 20
+# The first steps compile or load kernels and sort the points. Then a rehearsal is counted in so many equal parts, each
+# of which costs what its median step does: on a busy machine some steps take much longer than the others, and of few
+# steps the one or other part would.
+FIRST_STEPS, PARTS = 2, 10
 
 
 @dataclass(frozen=True)
@@ -73,10 +74,9 @@ def rehearse(scene: Scene, factor: int, threads: int) -> Rehearsal:
 
 
 def _growth(durations: list[float]) -> float:
-    """By how much the typical step of the whole exceeds that of the start [s]."""
-    counted = durations[FIRST_STEPS:]
-    parts = [np.median(counted[i : i + STEPS_OF_MEDIAN]) for i in range(0, len(counted), STEPS_OF_MEDIAN)]
-    return float(np.mean(parts) - parts[0]) if parts else 0.0
+    """By how much the typical step of the whole exceeds that of the first part [s]."""
+    medians = [np.median(part) for part in np.array_split(durations[FIRST_STEPS:], PARTS) if len(part) > 0]
+    return float(np.mean(medians) - medians[0]) if medians else 0.0
 
 
 def rehearsals(scene: Scene, points: int, threads: int) -> list[Rehearsal]:

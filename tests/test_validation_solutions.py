@@ -8,6 +8,7 @@ import pytest
 from validation.cam_clay_solutions import EXAMPLE
 from validation.cases.bagnold_incline import HEIGHT, exact_velocity, inertial_number
 from validation.cases.elastic_bar_vibration import frequency
+from validation.cases.generalised_vortex import history, largest
 from validation.cases.rigid_rotation import START, turned_stress
 from validation.cases.sliding_block import exact_distance
 
@@ -52,3 +53,10 @@ def test_a_turned_stress_keeps_its_invariants():
     values, start = list(turned.values()), list(START.values())
     assert sum(values[:3]) == pytest.approx(sum(start[:3]))
     assert values[0] * values[1] - values[3] ** 2 == pytest.approx(start[0] * start[1] - start[3] ** 2)
+
+
+def test_the_vortex_follows_its_exact_motion_with_the_body_force_of_the_right_sign():
+    errors = [largest(history(cells)) for cells in (6, 10)]
+    assert errors[1] < 0.08
+    assert errors[0] > 2.0 * errors[1]
+    assert largest(history(6, shear_sign=-1.0)) > 0.5
