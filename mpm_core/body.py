@@ -134,9 +134,9 @@ class Body:
 
     def sort(self, grid: Grid, basis: Basis, threads: int) -> None:
         """Bring the points that are awake into the order of their stencils and cut them into stripes."""
-        points, ids = self.points_awake, self.ids[: self.awake]
-        order, self.stripe_starts = sort_by_stencil(points, grid.origin, grid.cell_size, basis.offset)
-        reorder(points, ids, order)
+        where = grid.origin, grid.cell_size, basis.offset
+        order, self.stripe_starts = sort_by_stencil(self.points_awake, *where)
+        reorder(self.storage, self.ids, 0, order)
         self.share_between(threads)
 
     def divide(self, asleep: NDArray[np.bool_]) -> None:
@@ -150,7 +150,7 @@ class Body:
             self.points[columns, asleep] = 0.0
         first = int(np.argmax(asleep))
         order = np.argsort(asleep[first:], kind="stable").astype(np.int32)
-        reorder(self.points[:, first:], self.ids[first:], order)
+        reorder(self.storage, self.ids, first, order)
         awake = len(asleep) - int(np.count_nonzero(asleep))
         self.set_awake(min(len(asleep), -(-awake // LANES) * LANES))
 

@@ -1,7 +1,7 @@
 """What the passes over the points report of a step, put together for a body."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -23,7 +23,7 @@ from mpm_core.stress import INTERNAL_WORK, MAX_INCREMENT, MAX_SIGNAL_SPEED
 
 
 class StepReport(NamedTuple):
-    """A step of a body.
+    """A step of a body, or of several.
 
     lowest_x ... highest_y  corners of its bounding box [m]
     kinetic                 energy [J/m]
@@ -56,6 +56,26 @@ def step_report(transfer: NDArray[np.float64], stress: NDArray[np.float64]) -> S
     if len(stress) == 0:
         return _NOTHING
     return StepReport(*_combined(transfer, stress))
+
+
+def together(reports: list[StepReport]) -> StepReport:
+    """The report of several bodies, at least one."""
+    if len(reports) == 1:
+        return reports[0]
+    each: Any = StepReport._make(zip(*reports, strict=True))
+    return StepReport(
+        lowest_x=min(each.lowest_x),
+        highest_x=max(each.highest_x),
+        lowest_y=min(each.lowest_y),
+        highest_y=max(each.highest_y),
+        kinetic=sum(each.kinetic),
+        moved_x=sum(each.moved_x),
+        moved_y=sum(each.moved_y),
+        internal_work=sum(each.internal_work),
+        fastest=max(each.fastest),
+        signal_speed=max(each.signal_speed),
+        increment=max(each.increment),
+    )
 
 
 @njit(cache=True)

@@ -20,7 +20,7 @@ from mpm_core.grid import Grid
 from mpm_core.held_nodes import hold_nodes
 from mpm_core.initial import build_bodies
 from mpm_core.reach import nothing_in_reach, reach_of
-from mpm_core.reports import step_report
+from mpm_core.reports import StepReport, step_report, together
 from mpm_core.scene import Scene
 from mpm_core.sleeping import STEPS_PER_LOOK, Sleep
 from mpm_core.sorting import LONGEST_DRIFT
@@ -246,11 +246,10 @@ class Simulation:
         for body, report in zip(self.bodies, reports, strict=True):
             if not (report.increment < LARGEST_INCREMENT and report.signal_speed < math.inf):
                 self._fail_unsound(body, dt)
-        lower = (min(report.lowest_x for report in reports), min(report.lowest_y for report in reports))
-        upper = (max(report.highest_x for report in reports), max(report.highest_y for report in reports))
-        self._refuse_lost_points(lower, upper)
-        self.drift += dt * max(report.fastest for report in reports)
-        self.strain_rate = max(report.increment for report in reports) / dt
+        whole = together(reports)
+        self._refuse_lost_points(whole)
+        self.drift += dt * whole.fastest
+        self.strain_rate = whole.increment / dt
         signals = [
             (max(report.signal_speed, body.signal_speed_asleep), report.fastest)
             for body, report in zip(self.bodies, reports, strict=True)
@@ -258,20 +257,20 @@ class Simulation:
         self.signal_speed = self._signal_speed(signals)
         gravity_x, gravity_y = self.scene.gravity
         self.ledger.count(
-            kinetic=sum(report.kinetic for report in reports),
-            risen=-dt * sum(gravity_x * report.moved_x + gravity_y * report.moved_y for report in reports),
-            worked=sum(report.internal_work for report in reports),
+            kinetic=whole.kinetic,
+            risen=-dt * (gravity_x * whole.moved_x + gravity_y * whole.moved_y),
+            worked=whole.internal_work,
         )
 
     def _at_least_free_fall(self, speed: float) -> float:
         """A signal speed no less than that of a fall through one cell, for material without stiffness."""
         return max(speed, math.sqrt(math.hypot(*self.scene.gravity) * self.grid.cell_size))
 
-    def _refuse_lost_points(self, lower: tuple[float, float], upper: tuple[float, float]) -> None:
-        for axis in (0, 1):
-            if axis in self.periodic_axes:
-                continue
-            if lower[axis] < self.grid.lower[axis] or upper[axis] > self.grid.upper[axis]:
+    def _refuse_lost_points(self, report: StepReport) -> None:
+        limits = ((report.lowest_x, report.highest_x), (report.lowest_y, report.highest_y))
+        for axis, (lowest, highest) in enumerate(limits):
+            is_lost = lowest < self.grid.lower[axis] or highest > self.grid.upper[axis]
+            if is_lost and axis not in self.periodic_axes:
                 self._fail_outside(axis)
 
     def _fail_outside(self, axis: int) -> None:

@@ -65,17 +65,18 @@ def _counting_sort(points, origin_x, origin_y, cell_size, offset):  # type: igno
     return order, stripe_starts
 
 
-def reorder(points: NDArray[np.float64], ids: NDArray[np.int32], order: NDArray[np.int32]) -> None:
-    """Bring points and their ids into an order."""
-    _reorder(points, order)
-    ids[:] = ids[order]
+def reorder(storage: NDArray[np.float64], ids: NDArray[np.int32], first: int, order: NDArray[np.int32]) -> None:
+    """Bring points and their ids, from the first of them on, into an order that is counted from there."""
+    _reorder(storage, first, order)
+    part = ids[first : first + len(order)]
+    part[:] = part[order]
 
 
 @njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def _reorder(points, order):  # type: ignore[no-untyped-def]
-    for column in prange(points.shape[0]):
-        row, found = points[column], np.empty(len(order))
+def _reorder(storage, first, order):  # type: ignore[no-untyped-def]
+    for column in prange(storage.shape[0]):
+        row, found = storage[column, first : first + len(order)], np.empty(len(order))
         for p in range(len(order)):
             # unsigned, so that nothing is done for numbers that count from the end
             found[p] = row[np.uint64(order[p])]
