@@ -89,7 +89,7 @@ def measure(effort: Effort) -> Evidence:
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """The point beyond the wall with the check switched off."""
     simulation = _with_a_point_beyond()
-    simulation._refuse_lost_points = lambda lower, upper: None  # type: ignore[method-assign]
+    simulation._refuse_lost_points = lambda report: None  # type: ignore[method-assign]
     simulation.step(1e-5)
     return (upper_bound("points beyond", "1", points_beyond(simulation), 0.0),)
 
