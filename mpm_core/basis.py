@@ -52,6 +52,12 @@ class Basis:
 
 
 @register_jitable
+def first_node(place, origin, cell_size, offset):  # type: ignore[no-untyped-def]
+    """Number of the first node of the stencil of a point along an axis; places lie beyond the origin by the offset."""
+    return int((place - origin) / cell_size - offset)
+
+
+@register_jitable
 def linear_weights(f: float) -> tuple[float, float]:
     """Hat functions."""
     return 1.0 - f, f

@@ -69,10 +69,8 @@ def row_of_wall(grid: Grid, wall: Wall) -> int:
 
 def is_in_reach(grid: Grid, wall: Wall, reach: Reach) -> bool:
     """Whether the row of nodes on a wall has any in reach."""
-    row = row_of_wall(grid, wall)
-    return (
-        reach.first_column <= row <= reach.last_column if wall.axis == 0 else reach.first_row <= row <= reach.last_row
-    )
+    first, last = reach.along(wall.axis)
+    return first <= row_of_wall(grid, wall) <= last
 
 
 def hold_at_wall(grid: Grid, wall: Wall, reach: Reach, gaps: NDArray[np.float64], dt: float) -> TakenByWall:
@@ -84,7 +82,7 @@ def hold_at_wall(grid: Grid, wall: Wall, reach: Reach, gaps: NDArray[np.float64]
     as the tangential impulse of a friction wall times the mean sliding velocity.
     """
     other = 1 - wall.axis
-    first, last = (reach.first_row, reach.last_row) if other == 1 else (reach.first_column, reach.last_column)
+    first, last = reach.along(other)
     start = row_of_wall(grid, wall) * grid.strides[wall.axis] + first * grid.strides[other]
     count = last - first + 1
     sign = 1.0 if wall.is_lower else -1.0

@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from materials.compilation import named
-from mpm_core.basis import Basis
+from mpm_core.basis import Basis, first_node
 from mpm_core.columns import X, Y
 from mpm_core.grid import Grid
 from mpm_core.sources import CORE_MARK
@@ -41,13 +41,18 @@ class Reach(NamedTuple):
         """Number of nodes in reach."""
         return int(np.maximum(0, self.last_rows - self.first_rows + 1).sum())
 
+    def along(self, axis: int) -> tuple[int, int]:
+        """First and last of the nodes along x (0) or y (1)."""
+        return (self.first_column, self.last_column) if axis == 0 else (self.first_row, self.last_row)
+
 
 def nothing_in_reach(grid: Grid) -> Reach:
     """The reach of no points."""
-    return _between(np.full(grid.shape[0], grid.shape[1]), np.full(grid.shape[0], -1))
+    return reach_between(np.full(grid.shape[0], grid.shape[1]), np.full(grid.shape[0], -1))
 
 
-def _between(first_rows: NDArray[np.int64], last_rows: NDArray[np.int64]) -> Reach:
+def reach_between(first_rows: NDArray[np.int64], last_rows: NDArray[np.int64]) -> Reach:
+    """The reach with these first and last rows in each column of the grid."""
     columns = np.flatnonzero(last_rows >= first_rows)
     first, last = (int(columns[0]), int(columns[-1])) if len(columns) > 0 else (0, -1)
     return Reach(first, last, int(first_rows.min()), int(last_rows.max()), first_rows, last_rows)
@@ -68,7 +73,7 @@ def reach_of(groups: Sequence[NDArray[np.float64]], grid: Grid, basis: Basis, pe
     if 1 in periodic_axes:
         occupied = last >= first
         first[occupied], last[occupied] = 0, grid.shape[1] - 1
-    return _between(first, last)
+    return reach_between(first, last)
 
 
 @njit(cache=True)
@@ -77,8 +82,7 @@ def _extend(x, y, origin, cell_size, offset, width, first_rows, last_rows):  # t
     columns = len(first_rows)
     lowest, highest = np.full(columns, np.int64(2**31)), np.full(columns, np.int64(-1))
     for p in range(len(x)):
-        i = int((x[p] - origin[0]) / cell_size - offset)
-        j = int((y[p] - origin[1]) / cell_size - offset)
+        i, j = first_node(x[p], origin[0], cell_size, offset), first_node(y[p], origin[1], cell_size, offset)
         lowest[i], highest[i] = min(lowest[i], j), max(highest[i], j)
     for i in range(columns):
         if highest[i] >= 0:

@@ -19,7 +19,7 @@ from mpm_core.fields import chosen_fields
 from mpm_core.grid import Grid
 from mpm_core.held_nodes import hold_nodes
 from mpm_core.initial import build_bodies
-from mpm_core.reach import nothing_in_reach, reach_of
+from mpm_core.reach import Reach, nothing_in_reach, reach_of
 from mpm_core.reports import StepReport, step_report, together
 from mpm_core.scene import Scene
 from mpm_core.sleeping import STEPS_PER_LOOK, Sleep
@@ -235,9 +235,14 @@ class Simulation:
             sleep.bring_sleepers()
 
     def find_reach(self) -> None:
-        """Find the nodes that what is awake can reach until the next sort, and leave zeros everywhere else."""
+        """Find the nodes that what is awake can reach until the next sort, and keep to them."""
+        points = [body.points_awake for body in self.bodies]
+        self.keep_to(reach_of(points, self.grid, self.basis, self.periodic_axes))
+
+    def keep_to(self, reach: Reach) -> None:
+        """Work on these nodes until the next sort, and leave zeros everywhere else."""
         momentum.clear(self.grid.nodes, self.grid, self.reach)
-        self.reach = reach_of([body.points_awake for body in self.bodies], self.grid, self.basis, self.periodic_axes)
+        self.reach = reach
         self.walls_in_reach = [wall for wall in self.walls if is_in_reach(self.grid, wall, self.reach)]
         self.contact = Contact(self.walls_in_reach, self.bodies, self.grid, self.basis, self.periodic_axes)
 

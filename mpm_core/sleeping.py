@@ -25,7 +25,7 @@ from numba import njit, prange
 from numpy.typing import NDArray
 
 from materials.compilation import named
-from mpm_core.basis import Basis
+from mpm_core.basis import Basis, first_node
 from mpm_core.body import Body
 from mpm_core.columns import X, Y
 from mpm_core.grid import COMPONENTS, MASS, NEW_VX, NEW_VY, Grid
@@ -113,9 +113,8 @@ class Sleep:
             _stir_points(*body.points[[X, Y]][:, displaced], *self._stencil(), stirred)
         fell = False
         for body in self.bodies:
-            sleeps = np.concatenate(
-                [~self._touched(body.points_awake, stirred), np.ones(body.count - body.awake, np.bool_)]
-            )
+            slept = np.ones(body.count - body.awake, np.bool_)
+            sleeps = np.concatenate([~self._touched(body.points_awake, stirred), slept])
             if np.count_nonzero(sleeps) >= body.count - body.awake + LANES:
                 body.divide(sleeps)
                 fell = True
@@ -180,8 +179,7 @@ def _stir_nodes(withheld, waking_squared, reach, stirred):  # type: ignore[no-un
 def _stir_points(x, y, origin, cell_size, offset, width, stirred):  # type: ignore[no-untyped-def]
     """Mark what is around points."""
     for p in range(len(x)):
-        i = int((x[p] - origin[0]) / cell_size - offset)
-        j = int((y[p] - origin[1]) / cell_size - offset)
+        i, j = first_node(x[p], origin[0], cell_size, offset), first_node(y[p], origin[1], cell_size, offset)
         stirred[max(0, i - RING) : i + width + RING, max(0, j - RING) : j + width + RING] = True
 
 
@@ -190,7 +188,6 @@ def _stir_points(x, y, origin, cell_size, offset, width, stirred):  # type: igno
 def _touched(x, y, origin, cell_size, offset, width, stirred):  # type: ignore[no-untyped-def]
     touched = np.empty(len(x), np.bool_)
     for p in range(len(x)):
-        i = int((x[p] - origin[0]) / cell_size - offset)
-        j = int((y[p] - origin[1]) / cell_size - offset)
+        i, j = first_node(x[p], origin[0], cell_size, offset), first_node(y[p], origin[1], cell_size, offset)
         touched[p] = stirred[i : i + width, j : j + width].any()
     return touched

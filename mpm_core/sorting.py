@@ -10,6 +10,7 @@ from numba import njit, prange
 from numpy.typing import NDArray
 
 from materials.compilation import named
+from mpm_core.basis import first_node
 from mpm_core.columns import X, Y
 from mpm_core.sources import CORE_MARK
 
@@ -34,8 +35,8 @@ def sort_by_stencil(
 @named(CORE_MARK)
 def _limits(places, origin, cell_size, offset):  # type: ignore[no-untyped-def]
     """The first of the first nodes along an axis, and the number of those from it to the last."""
-    first = int((places.min() - origin) / cell_size - offset)
-    return first, int((places.max() - origin) / cell_size - offset) - first + 1
+    first = first_node(places.min(), origin, cell_size, offset)
+    return first, first_node(places.max(), origin, cell_size, offset) - first + 1
 
 
 @njit(cache=True)
@@ -48,8 +49,8 @@ def _counting_sort(points, origin_x, origin_y, cell_size, offset):  # type: igno
     keys = np.empty(count, np.int32)
     starts = np.zeros(columns * rows + 1, np.int64)
     for p in range(count):
-        i = int((x[p] - origin_x) / cell_size - offset) - first_x
-        j = int((y[p] - origin_y) / cell_size - offset) - first_y
+        i = first_node(x[p], origin_x, cell_size, offset) - first_x
+        j = first_node(y[p], origin_y, cell_size, offset) - first_y
         keys[p] = i * rows + j
         starts[keys[p] + 1] += 1
     for key in range(columns * rows):

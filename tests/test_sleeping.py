@@ -148,6 +148,21 @@ def test_a_run_asleep_goes_on_to_the_same_bits(tmp_path):
     assert whole.ledger == resumed.ledger
 
 
+def test_what_is_withheld_goes_on_to_the_same_bits_while_points_drift(tmp_path):
+    """Between two sorts points have drifted: the nodes that they reach now are not those that were held so far."""
+    settings = {"time.end": 0.9, "sleep": {"speed": SPEED, "window": 0.02}}
+    whole = led_to(FALLING, 0.265, settings)
+    assert 0.0 < awake(whole) < 1.0
+    assert whole.drift > 0.0
+    write_checkpoint(tmp_path, whole, Clock())
+    resumed = simulation(FALLING, settings)
+    read_checkpoint(tmp_path, resumed)
+    for case in (whole, resumed):
+        advance(case, 0.267)
+    assert whole.sleep.withheld.any()
+    assert (whole.sleep.withheld == resumed.sleep.withheld).all()
+
+
 def test_the_history_tells_what_sleeps(tmp_path):
     run(Scene.from_dict(changed(PILE, {**ASLEEP, "time.end": END, "output": {"pictures": False}})), tmp_path)
     history = read_history(tmp_path)

@@ -7,9 +7,12 @@ import h5py
 
 from materials import InputError
 from mpm_core.output import atomic
+from mpm_core.reach import reach_between
 from mpm_core.simulation import Ledger, Simulation
 
 CHECKPOINT_NAME = "checkpoint.h5"
+# What of the reach is stored; the rest follows.
+REACH_ROWS = ("first_rows", "last_rows")
 
 
 @dataclass
@@ -35,6 +38,9 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
         file.attrs.update(scalars)
         for name, part in (("clock", clock), ("ledger", simulation.ledger)):
             file.create_group(name).attrs.update(asdict(part))
+        # Found anew from where points have drifted to, it would be another, and so what is withheld from its nodes.
+        for name in REACH_ROWS:
+            file.create_dataset(f"reach/{name}", data=getattr(simulation.reach, name))
         for number, body in enumerate(simulation.bodies):
             group = file.create_group(f"body/{number}")
             group.create_dataset("points", data=body.points)
@@ -90,7 +96,7 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     simulation.last_step = float(file.attrs["last_step"])
     simulation.signal_speed = float(file.attrs["signal_speed"])
     simulation.strain_rate = float(file.attrs["strain_rate"])
-    simulation.find_reach()
+    simulation.keep_to(reach_between(*(file[f"reach/{name}"][:] for name in REACH_ROWS)))
     simulation.ledger = Ledger(**{name: float(value) for name, value in file["ledger"].attrs.items()})
     clock = file["clock"].attrs
     return Clock(int(clock["next_frame"]), int(clock["next_history"]), float(clock["wall_time"]))
