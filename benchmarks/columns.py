@@ -14,7 +14,7 @@ POINTS_PER_CELL = 4
 AHEAD = 1.0
 
 
-def cell_size_for(points: int) -> float:
+def cell_size_for(points: float) -> float:
     """A cell size [m] that divides the domain and gives about this many points."""
     cells_per_metre = (points / POINTS_PER_CELL / COLUMN_AREA) ** 0.5
     return 1.0 / (20 * max(1, round(cells_per_metre / 20)))

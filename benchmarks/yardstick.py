@@ -104,7 +104,7 @@ def grid_to_points(x, v, c, grid_v, h, dt):  # type: ignore[no-untyped-def]
 @register_jitable
 def row_as_tuple(states, p, count):  # type: ignore[no-untyped-def]
     """A row of an array as a tuple, of which a law's state is made."""
-    return to_fixed_tuple(states[p], count)
+    return to_fixed_tuple(states[p], count)  # type: ignore[call-arg]
 
 
 @cache

@@ -88,7 +88,8 @@ def _judge(folders: list[Path], dem: list[Path], out: Path | None) -> None:
 
 
 def _draw(runs: list[tuple[str, "RunFolder"]], out: Path, field: str) -> None:
-    from mpm_core.output.pictures import draw_history, draw_snapshots
+    from mpm_core.output.pictures import draw_history
+    from mpm_core.output.snapshots import draw_snapshots
 
     out.mkdir(parents=True, exist_ok=True)
     limits = (0.0, 3.0) if field == "shear_strain" else None

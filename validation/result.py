@@ -78,7 +78,8 @@ def share_of_band(found: Measurement) -> float:
 def run_case(case: Case, effort: Effort) -> CaseResult:
     """Measure a case and its control; a computation that breaks down is a failure of the case."""
     started = time.perf_counter()
-    evidence, control, failure = NO_EVIDENCE, (), ""
+    evidence, failure = NO_EVIDENCE, ""
+    control: tuple[Measurement, ...] = ()
     try:
         evidence = case.measure(effort)
         control = case.control(effort)

@@ -20,7 +20,7 @@ def command_reference() -> str:
 
 def commands(group: Any) -> dict[str, Any]:
     """Every command by its full name; those of a sub-group bear its name before theirs."""
-    found = {}
+    found: dict[str, Any] = {}
     for name, command in group.commands.items():
         if hasattr(command, "commands"):
             found |= {f"{name} {inner}": one for inner, one in commands(command).items()}

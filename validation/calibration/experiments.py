@@ -147,7 +147,9 @@ def _strained(name: str, controls: Mapping[str, Control]) -> Experiment:
             name: getattr(settings, name) for name in ("initial_pressure", "density", "grain_density", "strain_rate")
         }
         of_test = StrainedSettings(**common, final_strain=dt * settings.strain_rate, time_step=dt)
-        path = replace(test.path(of_test), rates=np.repeat(changes / (substeps * dt), substeps))
+        of_one_step = test.path(of_test)
+        assert isinstance(of_one_step, LoadingPath)
+        path = replace(of_one_step, rates=np.repeat(changes / (substeps * dt), substeps))
         start = initial_point(specimen, of_test)
         points = (start, *follow_path(specimen, path, start, substeps))
         return ElementResult(specimen, test.name, of_test, path.steps, points)

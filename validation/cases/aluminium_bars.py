@@ -10,7 +10,7 @@ from mpm_core.simulation import Simulation
 from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
 from validation.scenes import advance, in_order_of_generation, shipped_simulation
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 
 TOE_BAND = 5e-2
 CELL = {Effort.QUICK: 0.005, Effort.FULL: 0.0025}

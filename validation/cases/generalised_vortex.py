@@ -188,7 +188,7 @@ def measure(effort: Effort) -> Evidence:
     order = Convergence(
         "displacement", "cell size [m]", sizes, tuple(largest(found[cells]) for cells in counts), LEAST_ORDER
     )
-    curves = [curve(f"{cells} cells per metre", *zip(*found[cells], strict=True)) for cells in counts]
+    curves = [curve(f"{cells} cells per metre", *np.transpose(found[cells])) for cells in counts]
     figure = Figure("Root mean square distance from the exact place", "time [s]", "error [m]", tuple(curves))
     notes: tuple[str, ...] = ()
     if effort is Effort.FULL:

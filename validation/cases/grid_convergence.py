@@ -9,7 +9,7 @@ from validation.scenes import advance
 BAND = 3e-2
 END = 1.5
 OBSERVABLES = ("center_of_mass_height", "runout", "height")
-CELLS = {
+CELLS: dict[Effort, dict[str, tuple[float, ...]]] = {
     Effort.QUICK: {"mu(I)-LC": (0.05, 0.025)},
     Effort.FULL: dict.fromkeys(SCENES, (0.025, 0.0125, 0.00625, 0.003125)),
 }

@@ -70,7 +70,7 @@ def _withhold_spin(body: Body) -> None:
     """Show the stress pass the symmetric part of the velocity gradient only."""
     update = body.update_stress
 
-    def without_spin(dt: float, tied: float, exchange: float) -> None:
+    def without_spin(dt: float, tied: float = 0.0, exchange: float = 0.0) -> None:
         gradient = body.points[[LXY, LYX]]
         body.points[[LXY, LYX]] = gradient.mean(axis=0)
         update(dt, tied, exchange)

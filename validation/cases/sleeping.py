@@ -13,6 +13,7 @@ from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, 
 from validation.collapses import collapse
 from validation.scenes import advance
 
+Array = NDArray[np.floating[Any]]
 START = 1.2
 END = {Effort.QUICK: 2.0, Effort.FULL: 3.0}
 CELL_SIZE = {Effort.QUICK: 0.025, Effort.FULL: 0.00625}
@@ -33,8 +34,8 @@ class Deposit(NamedTuple):
     cost      processor time of a step since then over that of a moving step
     """
 
-    x: NDArray[np.float64]
-    depth: NDArray[np.float64]
+    x: Array
+    depth: Array
     awake: float
     cost: float
 
@@ -59,18 +60,18 @@ def _cost_of_step(simulation: Simulation, end: float, observe: Callable[[Simulat
     return (time.process_time() - started) / (simulation.steps - steps)
 
 
-def _depth(simulation: Simulation) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _depth(simulation: Simulation) -> tuple[Array, Array]:
     """The volume over columns `COLUMN` cells apart, shared out by hat functions, over their distance."""
     grid, (body,) = simulation.grid, simulation.bodies
     distance = COLUMN * grid.cell_size
     place = (body.points[X] - grid.lower[0]) / distance
     left = place.astype(int)
     right_share = place - left
-    volume = body.point_mass / body.points[DENSITY] / distance
+    volume = body.point_mass / body.points[DENSITY]
     columns = grid.cells[0] // COLUMN + 2
-    depth = np.bincount(left, volume * (1.0 - right_share), columns)
-    depth += np.bincount(left + 1, volume * right_share, columns)
-    return grid.lower[0] + distance * np.arange(columns), depth
+    held = np.bincount(left, volume * (1.0 - right_share), columns)
+    held = held + np.bincount(left + 1, volume * right_share, columns)
+    return grid.lower[0] + distance * np.arange(columns), held / distance
 
 
 def compared(material: str, effort: Effort, without: Deposit, asleep: Deposit) -> tuple[Measurement, Measurement]:
@@ -84,7 +85,8 @@ def compared(material: str, effort: Effort, without: Deposit, asleep: Deposit) -
 
 def measure(effort: Effort) -> Evidence:
     """Cam Clay, with and without sleep."""
-    measurements, figures, notes = [], [], []
+    measurements: list[Measurement] = []
+    figures, notes = [], []
     for material in MATERIALS[effort]:
         without = deposit(material, effort, {})
         asleep = deposit(material, effort, {"sleep.speed": SPEED, "sleep.start": START})

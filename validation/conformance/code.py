@@ -54,8 +54,9 @@ def pure(subject: Subject) -> Outcome:
             again = law.update(start.stress, strain_rate, end.density, start.state, parameters, dt)
             if again != (end.stress, end.state):
                 return Outcome("FAIL", "update gives another result for the same input: it keeps something of its own")
-    first = [law.sound_speed(*call.end, parameters) for call in subject.calls]
-    second = [law.sound_speed(*call.end, parameters) for call in reversed(subject.calls)]
+    points = [call.end for call in subject.calls]
+    first = [law.sound_speed(end.stress, end.density, end.state, parameters) for end in points]
+    second = [law.sound_speed(end.stress, end.density, end.state, parameters) for end in reversed(points)]
     if first != second[::-1]:
         return Outcome("FAIL", "sound_speed gives another result for the same input: it keeps something of its own")
     return Outcome("pass", f"{len(subject.calls)} updates repeated in other orders")
@@ -79,7 +80,7 @@ def ptx(subject: Subject) -> Outcome:
         version("numba-cuda")
     except PackageNotFoundError:
         return Outcome("skipped", "numba-cuda is not installed")
-    from numba import cuda
+    from numba.cuda import compile_ptx  # type: ignore[attr-defined]
 
     device = SimpleNamespace(compute_capability=COMPUTE_CAPABILITY)
     start = subject.at_rest(subject.pressure)
@@ -88,10 +89,10 @@ def ptx(subject: Subject) -> Outcome:
     pointwise_law(subject.law)
     with mock.patch("numba.cuda.dispatcher.get_current_device", return_value=device):
         try:
-            cuda.compile_ptx(lambda x: 2.0 * x, (types.float64,), device=True, cc=COMPUTE_CAPABILITY)
+            compile_ptx(lambda x: 2.0 * x, (types.float64,), device=True, cc=COMPUTE_CAPABILITY)
         except Exception as error:
             return Outcome("skipped", f"numba-cuda finds no CUDA toolkit ({type(error).__name__})")
-        text, _ = cuda.compile_ptx(subject.law.update, arguments, device=True, cc=COMPUTE_CAPABILITY)
+        text, _ = compile_ptx(subject.law.update, arguments, device=True, cc=COMPUTE_CAPABILITY)
     return judged(".target sm_75" in text, f"{len(text.splitlines())} lines of PTX")
 
 

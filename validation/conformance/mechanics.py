@@ -52,9 +52,11 @@ def objectivity(subject: Subject) -> Outcome:
     law, worst = subject.law, 0.0
     for call in subject.calls:
         rotation, _ = np.linalg.qr(random.standard_normal((3, 3)))
-        rotated = [_tensor(rotation @ _matrix(found) @ rotation.T) for found in (call.start.stress, call.strain_rate)]
-        stress, state = law.update(*rotated, call.end.density, call.start.state, subject.parameters, call.dt)
-        expected = _tensor(rotation @ _matrix(call.end.stress) @ rotation.T)
+        start, strain_rate, expected = (
+            _tensor(rotation @ _matrix(found) @ rotation.T)
+            for found in (call.start.stress, call.strain_rate, call.end.stress)
+        )
+        stress, state = law.update(start, strain_rate, call.end.density, call.start.state, subject.parameters, call.dt)
         worst = max(
             worst,
             largest_difference(stress, expected, subject.pressure),

@@ -32,7 +32,7 @@ SERIES_UNITS = {
     "potential_energy": "J/m",
 }
 # By the number of axes: series in full; surfaces to 1e-7, fields to 5e-4 of their value, finer than one grain tells.
-STORED_TYPES = {1: np.float64, 2: np.float32, 3: np.float16}
+STORED_TYPES: dict[int, type[np.floating[Any]]] = {1: np.float64, 2: np.float32, 3: np.float16}
 SNAPSHOT_UNITS = {
     "solid_fraction": "1",
     "velocity_x": "m/s",

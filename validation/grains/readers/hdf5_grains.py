@@ -5,6 +5,7 @@ position and velocity have the shape (n, 3), radius and the optional type the sh
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -34,7 +35,7 @@ def frames(path: Path) -> Iterator[RawFrame]:
 
 
 def _frame(path: Path, name: str, group: h5py.Group) -> RawFrame:
-    columns = {}
+    columns: dict[str, Any] = {}
     for key, shape, parts in (
         ("position", 2, ("x", "y", "z")),
         ("velocity", 2, ("vx", "vy", "vz")),
