@@ -1,4 +1,4 @@
-"""Settings for a stated accuracy: cell size and safety factor that a scene need not choose itself.
+"""Settings for a stated accuracy: cell size, points per cell and safety factor that a scene need not choose itself.
 
 `grainlaw validate speed_error` measured how runout, height of the pile and height of the centre of mass of column
 collapses differ from their mean on finer grids, over cell size, step, transfer and shape functions. Here stands, for
@@ -21,21 +21,22 @@ FINEST_SHARE = 0.5
 
 @dataclass(frozen=True)
 class Preset:
-    """Cells across the narrowest body, and fraction of the stable step."""
+    """Cells across the narrowest body, material points per cell, and fraction of the stable step."""
 
     cells_across: int
+    points_per_cell: int
     safety: float
 
 
 PRESETS: dict[str, dict[str, Preset]] = {
-    "mu_i_lc": {"10%": Preset(12, 0.4), "3%": Preset(48, 0.4)},
-    "modified_cam_clay, normally consolidated": {"10%": Preset(48, 0.4)},
+    "mu_i_lc": {"10%": Preset(8, 16, 0.4), "3%": Preset(48, 16, 0.4)},
+    "modified_cam_clay, overconsolidation_ratio 1": {"10%": Preset(48, 4, 0.4)},
 }
 ACCURACIES = ("10%", "3%", "1%")
 
 
 def with_settings_for_accuracy(content: Any) -> Any:
-    """The tables of a scene with `grid.cell_size` and `time.safety` filled in where `accuracy` asks for it.
+    """The tables of a scene, with what it leaves open of cell size, points and step filled in where `accuracy` asks.
 
     Raises ValueError for an accuracy that was not reached with a law of the scene, and where no cell size divides the
     domain. What is not well-formed is left to the validation of the scene.
@@ -52,21 +53,24 @@ def with_settings_for_accuracy(content: Any) -> Any:
         **content,
         "grid": {**grid, "cell_size": cell_size},
         "time": {"safety": preset.safety, **time},
+        "body": [_with_points(body, preset.points_per_cell) for body in content["body"]],
     }
 
 
 def _kinds(content: Mapping[str, Any]) -> list[str]:
-    """Of each material of a scene the name of its law, and whether it is normally consolidated.
+    """Of each material of a scene the name of its law, and of clay how it is consolidated.
 
-    Overconsolidated clay softens as it fails: its runout depends on the cell size however small that is.
+    Overconsolidated clay softens as it fails, so that its runout depends on the cells in another way.
     """
     materials = content.get("material")
     if not isinstance(materials, Mapping):
         return []
-    tables = {name: table for name, table in materials.items() if isinstance(table, Mapping)}
-    consolidated = {name: table.get("overconsolidation_ratio") == 1.0 for name, table in tables.items()}
-    laws = {name: str(table.get("law", name)) for name, table in tables.items()}
-    return [f"{law}, normally consolidated" if consolidated[name] else law for name, law in laws.items()]
+    return [_kind(name, table) for name, table in materials.items() if isinstance(table, Mapping)]
+
+
+def _kind(name: str, table: Mapping[str, Any]) -> str:
+    law, ratio = str(table.get("law", name)), table.get("overconsolidation_ratio")
+    return f"{law}, overconsolidation_ratio {ratio:g}" if isinstance(ratio, int | float) else law
 
 
 def _strictest(accuracy: str, kinds: Iterable[str]) -> Preset:
@@ -78,7 +82,16 @@ def _strictest(accuracy: str, kinds: Iterable[str]) -> Preset:
             allowed = f"allowed: {', '.join(reached)}" if reached else "state grid.cell_size and time.safety instead"
             raise ValueError(f"accuracy = '{accuracy}' was not reached on any grid with {kind}; {allowed}")
         presets.append(reached[accuracy])
-    return Preset(max(found.cells_across for found in presets), min(found.safety for found in presets))
+    return Preset(
+        max(found.cells_across for found in presets),
+        max(found.points_per_cell for found in presets),
+        min(found.safety for found in presets),
+    )
+
+
+def _with_points(body: Mapping[str, Any], points_per_cell: int) -> dict[str, Any]:
+    """A table of a body, with so many points per cell where it does not state any."""
+    return {**body, "points_per_cell": body.get("points_per_cell") or points_per_cell}
 
 
 def _narrowest_width(bodies: Any) -> float | None:

@@ -175,7 +175,9 @@ class BodySection(Section):
     material: str = Field(description="name of a [material.NAME] table")
     shape: AnyShape = Field(description="rectangle, disc, polygon or mesh")
     density: float = Field(gt=0, description="initial bulk density [kg/m3]")
-    points_per_cell: Literal[1, 4, 9, 16] = Field(default=4, description="material points per cell, a square number")
+    points_per_cell: Literal[1, 4, 9, 16, 25, 36] = Field(
+        default=4, description="material points per cell, a square number; may be left to `accuracy`"
+    )
     velocity: Corner = Field(default=(0.0, 0.0), description="initial velocity [m/s]")
     initial_stress: InitialStressSection = Field(default=InitialStressSection(), description="stress at the start")
 
@@ -203,8 +205,8 @@ class Scene(Section):
     title: str = Field(default="", description="one line for reports")
     accuracy: Literal["10%", "3%", "1%"] | None = Field(
         default=None,
-        description="sets grid.cell_size and time.safety where the scene does not, to what kept runout, height and "
-        "centre of mass of column collapses within this of finer grids",
+        description="sets grid.cell_size, time.safety and body.points_per_cell where the scene does not, to what kept "
+        "runout, height and centre of mass of column collapses within this of finer grids with 16 points per cell",
     )
     gravity: Corner = Field(default=(0.0, -9.81), description="gravity vector [m/s2]")
     grid: GridSection

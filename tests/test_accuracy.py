@@ -11,9 +11,9 @@ SOFTENING = {**CAM_CLAY, "overconsolidation_ratio": 4.0}
 
 def test_it_sets_what_the_scene_leaves_open():
     scene = Scene.from_dict(changed(COLUMN, {"accuracy": "10%", "grid.cell_size": None}))
-    assert (scene.grid.cell_size, scene.time.safety) == (0.025, 0.4)
-    stated = Scene.from_dict(changed(COLUMN, {"accuracy": "10%", "time.safety": 0.2}))
-    assert (stated.grid.cell_size, stated.time.safety) == (0.025, 0.2)
+    assert (scene.grid.cell_size, scene.time.safety, scene.body[0].points_per_cell) == (1.0 / 30.0, 0.4, 16)
+    stated = Scene.from_dict(changed(COLUMN, {"accuracy": "10%", "time.safety": 0.2, "body.0.points_per_cell": 9}))
+    assert (stated.grid.cell_size, stated.time.safety, stated.body[0].points_per_cell) == (0.025, 0.2, 9)
 
 
 def test_normally_consolidated_clay_has_settings_of_its_own():
@@ -28,7 +28,7 @@ def test_normally_consolidated_clay_has_settings_of_its_own():
         ({"accuracy": "1%"}, "not reached on any grid with mu_i_lc; allowed: 10%, 3%"),
         (
             {"accuracy": "10%", "material": {"modified_cam_clay": SOFTENING}, "body.0.material": "modified_cam_clay"},
-            "with modified_cam_clay; state grid.cell_size and time.safety instead",
+            "with modified_cam_clay, overconsolidation_ratio 4; state grid.cell_size and time.safety instead",
         ),
         ({"accuracy": "10%", "grid.cell_size": None, "grid.upper": [3.1, 1.037]}, "divide the domain"),
     ],

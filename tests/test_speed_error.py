@@ -25,9 +25,10 @@ def test_the_front_holds_what_nothing_cheaper_is_as_good_as():
     assert pareto_front(costs) == [("cheap", 1.0, 0.3), ("good", 3.0, 0.1)]
 
 
-def test_settings_of_different_precision_have_files_of_their_own():
-    keys = {Setting("MCC OCR 1", "paper", 0.05, precision=precision).key for precision in ("double", "single")}
-    assert len(keys) == 2
+def test_settings_of_different_precision_and_points_have_files_of_their_own():
+    usual = Setting("MCC OCR 1", "paper", 0.05)
+    others = replace(usual, precision="single"), replace(usual, points_per_cell=4)
+    assert len({usual.key, *(other.key for other in others)}) == 3
 
 
 def test_the_square_costs_more_and_errs_less_on_finer_cells():

@@ -20,7 +20,7 @@ PROMISES = {
     Effort.QUICK: (("mu(I)-LC", "10%", "middle"),),
     Effort.FULL: (("mu(I)-LC", "10%", "middle"), ("mu(I)-LC", "3%", "middle"), ("MCC OCR 1", "10%", "square")),
 }
-CELLS_OF_REFERENCE = {Effort.QUICK: (1.0 / 70.0, 1.0 / 80.0), Effort.FULL: REFERENCE_CELLS}
+CELLS_OF_REFERENCE = {Effort.QUICK: (1.0 / 60.0, 1.0 / 70.0), Effort.FULL: REFERENCE_CELLS}
 
 COARSE_CELL = 0.1
 
@@ -43,9 +43,10 @@ def promised_setting(material: str, accuracy: str, column: str, cell_size: float
     """What a scene with this accuracy is run with, or the same on cells of another size [m]."""
     lower, upper = COLUMNS[column]
     shape = {"kind": "rectangle", "lower": lower, "upper": upper}
-    changes = {"accuracy": accuracy, "grid.cell_size": cell_size, "body.0.shape": shape}
+    left_open = {"grid.cell_size": cell_size, "body.0.points_per_cell": None}
+    changes = {"accuracy": accuracy, "body.0.shape": shape, **left_open}
     scene = Scene.load(FOLDER_OF_SCENES / f"{SCENES[material]}.toml", changes)
-    return Setting(material, column, scene.grid.cell_size, scene.time.safety)
+    return Setting(material, column, scene.grid.cell_size, scene.body[0].points_per_cell, scene.time.safety)
 
 
 def mean_outcome(fine: Iterable[Setting]) -> dict[str, float]:

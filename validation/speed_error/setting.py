@@ -36,6 +36,7 @@ class Setting:
     material: str
     column: str
     cell_size: float
+    points_per_cell: int = 16
     safety: float = 0.4
     scheme: str = "affine_flip"
     basis: str = "quadratic"
@@ -44,7 +45,7 @@ class Setting:
     @property
     def key(self) -> str:
         """A name for files."""
-        sizes = f"{self.cell_size:.6g}", f"{self.safety:g}"
+        sizes = f"{self.cell_size:.6g}", f"{self.points_per_cell}", f"{self.safety:g}"
         words = (self.material, self.column, *sizes, self.scheme, self.basis, self.precision)
         return "-".join("".join(c for c in word if c.isalnum() or c in "._") for word in words)
 
@@ -54,6 +55,7 @@ class Setting:
         lower, upper = COLUMNS[self.column]
         return {
             "body.0.shape": {"kind": "rectangle", "lower": lower, "upper": upper},
+            "body.0.points_per_cell": self.points_per_cell,
             "grid.precision": self.precision,
             "time.safety": self.safety,
             "transfer.scheme": self.scheme,
