@@ -3,14 +3,13 @@
 The counterpart of the two `quads` that a node fills in double precision.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
 from numba.core import types
 from numba.core.cgutils import get_or_insert_function
 from numba.core.datamodel.models import PrimitiveModel
-from numba.extending import intrinsic, register_model
+from numba.extending import intrinsic, register_jitable, register_model
 
 from mpm_core.quads import place
 
@@ -87,13 +86,34 @@ def _scaled_oct_sum(typing_context: Any, factor: Any, a: Any, b: Any) -> Any:
     return OCT(types.float32, OCT, OCT), generate
 
 
-# (array, position) -> the eight singles from a position on
-oct_at: Callable[..., Any] = _oct_at
-# (array, position) -> the four singles from a position on, and four zeros
-half_oct_at: Callable[..., Any] = _half_oct_at
-# (array, position, oct) -> None; stores eight singles from a position on
-put_oct: Callable[..., None] = _put_oct
-# (a, b) -> a + b
-oct_sum: Callable[..., Any] = _oct_sum
-# (number, a, b) -> number * a + b, rounded once
-scaled_oct_sum: Callable[..., Any] = _scaled_oct_sum
+# As in `quads`, closures hold what hands on, not the intrinsics.
+
+
+@register_jitable(forceinline=True)
+def oct_at(array: Any, position: Any) -> Any:
+    """The eight singles from a position on."""
+    return _oct_at(array, position)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def half_oct_at(array: Any, position: Any) -> Any:
+    """The four singles from a position on, and four zeros."""
+    return _half_oct_at(array, position)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def put_oct(array: Any, position: Any, oct_: Any) -> None:
+    """Store eight singles from a position on."""
+    _put_oct(array, position, oct_)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def oct_sum(a: Any, b: Any) -> Any:
+    """Return a + b."""
+    return _oct_sum(a, b)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def scaled_oct_sum(number: Any, a: Any, b: Any) -> Any:
+    """Return number * a + b, rounded once."""
+    return _scaled_oct_sum(number, a, b)  # type: ignore[call-arg]

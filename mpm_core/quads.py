@@ -17,7 +17,7 @@ from llvmlite import ir
 from numba.core import types
 from numba.core.cgutils import get_or_insert_function
 from numba.core.datamodel.models import PrimitiveModel
-from numba.extending import intrinsic, overload, register_model
+from numba.extending import intrinsic, overload, register_jitable, register_model
 
 LANES = 4
 
@@ -258,26 +258,79 @@ for _symbol, _operation in (
 ):
     _operator(_symbol, _operation)
 
-# (array, position) -> the four numbers from a position on
-quad_at: Callable[..., Any] = _quad_at
-# (array, position, quad) -> None; stores four numbers from a position on
-put_quad: Callable[..., None] = _put_quad
-# (number) -> a quad of it
-filled: Callable[..., Any] = _filled
-# (number, a, b) -> number * a + b, rounded once
-scaled_sum: Callable[..., Any] = _fused
-# (a, b, c, d) -> four quads, of the first lanes, the second lanes and so on
-transposed: Callable[..., Any] = _transposed
-# (quad) -> its second half, then its first
-halves_swapped: Callable[..., Any] = _halves_swapped
-# (a, b) -> the first half of a, the second of b
-halves_joined: Callable[..., Any] = _halves_joined
-# (quad, count, otherwise) -> the first lanes of a quad, and another number in the rest
-first_lanes: Callable[..., Any] = _first_lanes
-# (quad) -> the sum, the smallest and the largest of its numbers
-total: Callable[..., float] = _reduced(lambda builder, a, b: builder.fadd(a, b))
-smallest: Callable[..., float] = _reduced(_smaller_of)
-largest: Callable[..., float] = _reduced(_larger_of)
+_total = _reduced(lambda builder, a, b: builder.fadd(a, b))
+_smallest = _reduced(_smaller_of)
+_largest = _reduced(_larger_of)
+
+
+# What follows hands on, so that closures over it have the same mark in every process: that of an intrinsic is random,
+# and a kernel with one in its closure would be compiled again by each.
+
+
+@register_jitable(forceinline=True)
+def quad_at(array: Any, position: Any) -> Any:
+    """The four numbers from a position on."""
+    return _quad_at(array, position)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def put_quad(array: Any, position: Any, quad: Any) -> None:
+    """Store four numbers from a position on."""
+    _put_quad(array, position, quad)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def filled(number: float) -> Any:
+    """A quad of a number."""
+    return _filled(number)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def scaled_sum(number: float, a: Any, b: Any) -> Any:
+    """Return number * a + b, rounded once."""
+    return _fused(number, a, b)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def transposed(a: Any, b: Any, c: Any, d: Any) -> Any:
+    """Four quads, of the first lanes, the second lanes and so on."""
+    return _transposed(a, b, c, d)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def halves_swapped(quad: Any) -> Any:
+    """The second half of a quad, then its first."""
+    return _halves_swapped(quad)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def halves_joined(a: Any, b: Any) -> Any:
+    """The first half of a, the second of b."""
+    return _halves_joined(a, b)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def first_lanes(quad: Any, count: float, otherwise: float) -> Any:
+    """The first lanes of a quad, and another number in the rest."""
+    return _first_lanes(quad, count, otherwise)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def total(quad: Any) -> float:
+    """The sum of the numbers."""
+    return _total(quad)
+
+
+@register_jitable(forceinline=True)
+def smallest(quad: Any) -> float:
+    """The smallest of the numbers."""
+    return _smallest(quad)
+
+
+@register_jitable(forceinline=True)
+def largest(quad: Any) -> float:
+    """The largest of the numbers."""
+    return _largest(quad)
 
 
 def truncated(a: Any) -> Any:
