@@ -64,7 +64,7 @@ FAULTS = {
                                 r"output\.fields: 'solid_fraction' needs a law with the parameter 'grain_density'"),
     "no body": ({"body": []}, r"body = \[\]: .*at least 1"),
     "body is a number": ({"body": 3}, r"body = 3: .*list"),
-    "points per cell": ({"body.0.points_per_cell": 5}, r"body\.0\.points_per_cell = 5: .*1, 4, 9 or 16"),
+    "points per cell": ({"body.0.points_per_cell": 5}, r"body\.0\.points_per_cell = 5: .*1, 4, 9, 16, 25 or 36"),
     "truth for a number": ({"body.0.density": True}, r"body\.0\.density = True: .*number"),
     "text for a number": ({"time.end": "1"}, r"time\.end = '1': .*number"),
     "mesh file": ({"body.0.shape": {"kind": "mesh", "file": "none.vtk"}},
