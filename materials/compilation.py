@@ -101,6 +101,15 @@ def registered(function: Callable[..., Any]) -> Callable[..., Any]:
     return _register_marked(function)
 
 
+def _name_by_module(kind: type[Any]) -> None:
+    """Name a NamedTuple by its module as well.
+
+    The compiler takes unions of types of the same names for one another. What one law leaves in the disk cache would
+    refer to the state of another, whose module the next process may not have.
+    """
+    kind.__name__ = f"{kind.__module__}.{kind.__qualname__}"
+
+
 @cache
 def pointwise_law(law: Law) -> PointwiseLaw:
     """The functions of a law, registered with the compiler."""
@@ -108,6 +117,8 @@ def pointwise_law(law: Law) -> PointwiseLaw:
     functions: list[Callable[..., Any]] = [law.initial_state, law.update, law.sound_speed]
     optional = [function for function in (law.small_step, law.stored_energy) if function is not None]
     modules = {law.parameters.__module__, law.state.__module__}
+    for kind in (law.parameters, law.state):
+        _name_by_module(kind)
     return PointwiseLaw(
         name=law.name,
         parameters=law.parameters,

@@ -10,10 +10,11 @@ from materials import InputError, SymmetricTensor
 from materials.compilation import explained, pointwise_law
 from materials.law import Law
 from mpm_core.basis import Basis
+from mpm_core.blocks import blocks_of
 from mpm_core.columns import AFFINE, DENSITY, FIRST_STATE, GRADIENT, NAMES, SXX, SXY, SYY, SZZ, VX, VY, X, Y
 from mpm_core.grid import Grid
-from mpm_core.grid_to_points import BLOCK, make_grid_to_points
 from mpm_core.grid_to_points import REPORTS as TRANSFER_REPORTS
+from mpm_core.grid_to_points import make_grid_to_points
 from mpm_core.points_to_grid import make_points_to_grid
 from mpm_core.quads import LANES
 from mpm_core.sorting import balanced_shares, reorder, sort_by_stencil
@@ -68,7 +69,7 @@ class Body:
     def set_awake(self, awake: int) -> None:
         """Let the first `awake` points take part in steps."""
         self.awake = awake
-        blocks = -(-awake // BLOCK)
+        blocks = blocks_of(awake)
         self.transfer_reports = np.zeros((blocks, TRANSFER_REPORTS))
         self.stress_reports = np.zeros((blocks, STRESS_REPORTS))
 

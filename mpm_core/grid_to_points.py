@@ -27,6 +27,7 @@ from numba.extending import register_jitable
 from materials.compilation import named
 from materials.tensor import SymmetricTensor, shear_strain_rate
 from mpm_core.basis import Basis
+from mpm_core.blocks import points_of_block
 from mpm_core.columns import AXX, AXY, AYX, AYY, CROWDING, LXX, LXY, LYX, LYY, MEAN_AROUND, SXX, SYY, VX, VY, X, Y
 from mpm_core.grid import BULK, COMPONENTS, NEW_VX
 from mpm_core.quads import (
@@ -47,8 +48,6 @@ from mpm_core.rows import OF_EVERY_LAW, rows_of
 from mpm_core.sources import CORE_MARK
 from mpm_core.stencils import GROUP, four_transposed, make_find_stencils
 from mpm_core.volumes import spreading_rate
-
-BLOCK = 2048
 
 # What `grid_to_points` reports for each block of points.
 KINETIC_ENERGY, LOWEST_X, HIGHEST_X, LOWEST_Y, HIGHEST_Y, MAX_SPEED, MOVED_X, MOVED_Y = range(8)
@@ -299,8 +298,9 @@ def make_grid_to_points(basis: Basis, ties: bool, spreads: bool) -> Callable[...
             receiving, room = room_for_receiving(), np.empty((7, GROUP * LANES))
             velocities, bulk = Gathered(room[0], room[1], room[2]), Gathered(room[3], room[4], room[5])
             energies, sums = room[6], no_sums()
-            for start in range(block * BLOCK, min(count, (block + 1) * BLOCK), GROUP):
-                first, last = np.uint64(start), np.uint64(min(start + GROUP, count))
+            begin, end = points_of_block(block, reports.shape[0], count)
+            for start in range(begin, end, GROUP):
+                first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
                 for p in range(first, last, LANES):
                     put_receiving(rows, p, p - first, nodes_y, ghosts, origin, inverse_size, receiving)
                 gather_velocities(last - first, nodes, nodes_y, receiving, velocities)

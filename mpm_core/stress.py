@@ -16,6 +16,7 @@ from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw, named
 from materials.tensor import THIRD, SymmetricTensor, shear_strain_rate, trace
+from mpm_core.blocks import points_of_block
 from mpm_core.columns import (
     CROWDING,
     DENSITY,
@@ -30,7 +31,6 @@ from mpm_core.columns import (
     SYY,
     SZZ,
 )
-from mpm_core.grid_to_points import BLOCK
 from mpm_core.law_at_points import make_apply_law, make_find_stiffness, make_largest_signal_speed, ordered_bits
 from mpm_core.quads import LANES, filled, first_lanes, quad_at, total
 from mpm_core.rows import rows_of
@@ -172,8 +172,9 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
             arrays = np.zeros((3, GROUP))
             ties, stiffness, room = arrays[0], arrays[1], (arrays[1], arrays[2])
             fastest, largest, work = np.int64(0), np.int64(0), 0.0
-            for start in range(block * BLOCK, min(count, (block + 1) * BLOCK), GROUP):
-                first, last = np.uint64(start), np.uint64(min(count, start + GROUP))
+            begin, end = points_of_block(block, reports.shape[0], count)
+            for start in range(begin, end, GROUP):
+                first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
                 if tied > 0.0:
                     find_stiffness(rows, first, last, parameters, stiffness)
                     tie_volumes(rows, first, last, tied, exchange, stiffness, ties)

@@ -2,9 +2,10 @@
 
 import os
 
-# Idle threads of OpenMP spin by default, which on a busy machine takes the time of those that work. Spin briefly, then
-# sleep. It has to be set before the first parallel kernel loads the library.
-os.environ.setdefault("GOMP_SPINCOUNT", "1000")
+# Idle threads of OpenMP spin by default, which on a busy machine takes the time of those that work, so that two runs
+# with two threads each on two cores take seven times as long. Spin for about as long as a step has no work for them,
+# then sleep. It has to be set before the first parallel kernel loads the library.
+os.environ.setdefault("GOMP_SPINCOUNT", "2000")
 
 import numba
 

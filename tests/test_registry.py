@@ -1,5 +1,6 @@
 """Laws are found through one hook; whatever is wrong with one is refused by name, and the rest keeps working."""
 
+import subprocess
 import sys
 from importlib.metadata import EntryPoint
 from textwrap import dedent
@@ -221,3 +222,12 @@ def test_law_that_does_not_compile_is_refused_by_name(tmp_path):
     specimen = Specimen(law, law.parameter_sets["one"].parameters, "spring", "made up")
     with pytest.raises(InputError, match=r"law 'spring' \(spring_plugin.py\) does not compile"):
         run_element_test(test, specimen, test.settings())
+
+
+def test_a_file_of_laws_leaves_nothing_that_needs_it_in_the_cache_of_other_laws(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    command = [sys.executable, "-m", "grainlaw", "element", "isotropic", "--material", "mu_i_lc"]
+    beside = ["--material", "spring", "--plugin", str(plugin_file(tmp_path))]
+    # the file's law first, so that the compiler knows its state before the other's
+    subprocess.run([*command[:4], *beside, *command[4:]], check=True, capture_output=True)
+    subprocess.run(command, check=True, capture_output=True)
