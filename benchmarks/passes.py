@@ -86,9 +86,8 @@ def _clocks(simulation: Simulation) -> "Iterator[dict[str, float]]":
     """Clocks around the functions that a step calls; yields the seconds of each pass, which grow while it runs."""
     places: list[tuple[Any, str, str]] = [
         (momentum, "clear", "grid"),
-        (momentum, "update_velocities", "grid"),
-        (momentum, "average_surroundings", "grid"),
-        (stepping, "hold_at_wall", "grid"),
+        (momentum, "update_nodes", "grid"),
+        (stepping, "hold_at_walls", "grid"),
         (Contact, "gaps", "grid"),
     ]
     for body in simulation.bodies:

@@ -4,6 +4,7 @@ A wall lies on a line of nodes. The shape functions interpolate there (see `basi
 row is the velocity of the material at the wall, and all that a wall does is done to that row.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
@@ -52,85 +53,101 @@ class Wall:
         return self.side in ("left", "bottom")
 
 
-class TakenByWall(NamedTuple):
-    """Energies of one step [J/m]: what the wall takes in all, and what of it sliding friction dissipates.
+class TakenByWalls(NamedTuple):
+    """Energies of one step [J/m]: what the walls take in all, and what of it sliding friction dissipates.
 
-    The rest is what the wall stops and, where it slides itself, the work that it does (negative).
+    The rest is what walls stop and, where they slide themselves, the work that they do (negative).
     """
 
     work: float
     friction: float
 
 
-def row_of_wall(grid: Grid, wall: Wall) -> int:
-    """Number of the row of nodes on a wall."""
+# A wall to compiled code: what it does, where it lies [m], and which of its row of nodes are in reach: the number along
+# the wall of the first one and of all, where the first one is in `Grid.nodes`, and how far it is to the next.
+HELD_ROW = np.dtype(
+    [
+        ("kind", np.int64),
+        ("axis", np.int64),
+        ("sign", np.float64),
+        ("place", np.float64),
+        ("coefficient", np.float64),
+        ("velocity", np.float64),
+        ("first", np.int64),
+        ("count", np.int64),
+        ("start", np.int64),
+        ("along", np.int64),
+    ]
+)
+
+
+def rows_in_reach(walls: Sequence[Wall], grid: Grid, reach: Reach) -> NDArray[np.void]:
+    """The rows of nodes in reach of those walls that have any, as `HELD_ROW`."""
+    rows = [_held_row(wall, grid, reach) for wall in walls if _is_in_reach(wall, grid, reach)]
+    return np.array(rows, HELD_ROW)
+
+
+def _row_of_wall(wall: Wall, grid: Grid) -> int:
     return GHOSTS if wall.is_lower else grid.cells[wall.axis] + GHOSTS
 
 
-def is_in_reach(grid: Grid, wall: Wall, reach: Reach) -> bool:
-    """Whether the row of nodes on a wall has any in reach."""
+def _is_in_reach(wall: Wall, grid: Grid, reach: Reach) -> bool:
     first, last = reach.along(wall.axis)
-    return first <= row_of_wall(grid, wall) <= last
+    return first <= _row_of_wall(wall, grid) <= last
 
 
-def hold_at_wall(grid: Grid, wall: Wall, reach: Reach, gaps: NDArray[np.float64], dt: float) -> TakenByWall:
-    """Apply a wall in reach to the new velocities of its row of nodes. Returns the energies that the wall takes.
+def _held_row(wall: Wall, grid: Grid, reach: Reach) -> tuple[float, ...]:
+    axis, other = wall.axis, 1 - wall.axis
+    sign, place = (1.0, grid.lower[axis]) if wall.is_lower else (-1.0, grid.upper[axis])
+    first, last = reach.along(other)
+    start = _row_of_wall(wall, grid) * grid.strides[axis] + first * grid.strides[other]
+    does = int(wall.kind), axis, sign, place, wall.coefficient, wall.velocity
+    return *does, first, last - first + 1, start, grid.strides[other]
+
+
+def hold_at_walls(grid: Grid, rows: NDArray[np.void], gaps: NDArray[np.float64], dt: float) -> TakenByWalls:
+    """Apply walls to the new velocities of their rows of nodes. Returns the energies that the walls take.
 
     A node of a friction wall comes no closer in a step of dt [s] than its gap [m] (`contact`).
 
     Energy is counted as impulse times the mean of old and new velocity, which is zero for what stays at rest; friction
     as the tangential impulse of a friction wall times the mean sliding velocity.
     """
-    other = 1 - wall.axis
-    first, last = reach.along(other)
-    start = row_of_wall(grid, wall) * grid.strides[wall.axis] + first * grid.strides[other]
-    count = last - first + 1
-    sign = 1.0 if wall.is_lower else -1.0
-    work, friction = _hold(
-        grid.nodes,
-        start,
-        grid.strides[other],
-        count,
-        wall.axis,
-        sign,
-        int(wall.kind),
-        wall.coefficient,
-        wall.velocity,
-        gaps[first : last + 1] / dt,
-    )
-    return TakenByWall(float(work), float(friction))
+    return TakenByWalls(*_hold(grid.nodes, rows, gaps, dt))
 
 
-@njit(cache=True)
+@njit(error_model="numpy", cache=True)
 @named(CORE_MARK)
-def _hold(  # type: ignore[no-untyped-def]
-    nodes, start, along, count, axis, sign, kind, friction, wall_velocity, allowed
-):
+def _hold(nodes, rows, gaps, dt):  # type: ignore[no-untyped-def]
     taken, dissipated = 0.0, 0.0
-    for k in range(count):
-        node = start + k * along
-        mass = nodes[node + MASS]
-        if mass <= 0.0:
-            continue
-        free_normal, free_tangential = nodes[node + NEW_VX + axis], nodes[node + NEW_VY - axis]
-        old_normal, old_tangential = nodes[node + OLD_VX + axis], nodes[node + OLD_VY - axis]
-        normal, tangential = free_normal, free_tangential
-        excess = max(0.0, -sign * normal - allowed[k])
-        if kind == WallKind.NO_SLIP:
-            normal, tangential = 0.0, wall_velocity
-        elif kind == WallKind.FREE_SLIP:
-            normal = 0.0
-        elif excess > 0.0:
-            normal = 0.0 - sign * allowed[k]
-            sliding = tangential - wall_velocity
-            tangential = wall_velocity + np.copysign(max(0.0, abs(sliding) - friction * excess), sliding)
-        nodes[node + NEW_VX + axis] = normal
-        nodes[node + NEW_VY - axis] = tangential
-        taken += 0.5 * mass * (free_normal - normal) * (old_normal + normal)
-        taken += 0.5 * mass * (free_tangential - tangential) * (old_tangential + tangential)
-        if kind == WallKind.FRICTION:
-            sliding = old_tangential + tangential - 2.0 * wall_velocity
-            dissipated += 0.5 * mass * (free_tangential - tangential) * sliding
+    for number in range(len(rows)):
+        row = rows[number]
+        axis, sign, wall_velocity = row.axis, row.sign, row.velocity
+        for k in range(row.count):
+            node = row.start + k * row.along
+            mass = nodes[node + MASS]
+            if mass <= 0.0:
+                continue
+            free_normal, free_tangential = nodes[node + NEW_VX + axis], nodes[node + NEW_VY - axis]
+            old_normal, old_tangential = nodes[node + OLD_VX + axis], nodes[node + OLD_VY - axis]
+            normal, tangential = free_normal, free_tangential
+            allowed = gaps[number, row.first + k] / dt
+            excess = max(0.0, -sign * normal - allowed)
+            if row.kind == WallKind.NO_SLIP:
+                normal, tangential = 0.0, wall_velocity
+            elif row.kind == WallKind.FREE_SLIP:
+                normal = 0.0
+            elif excess > 0.0:
+                normal = 0.0 - sign * allowed
+                sliding = tangential - wall_velocity
+                tangential = wall_velocity + np.copysign(max(0.0, abs(sliding) - row.coefficient * excess), sliding)
+            nodes[node + NEW_VX + axis] = normal
+            nodes[node + NEW_VY - axis] = tangential
+            taken += 0.5 * mass * (free_normal - normal) * (old_normal + normal)
+            taken += 0.5 * mass * (free_tangential - tangential) * (old_tangential + tangential)
+            if row.kind == WallKind.FRICTION:
+                sliding = old_tangential + tangential - 2.0 * wall_velocity
+                dissipated += 0.5 * mass * (free_tangential - tangential) * sliding
     return taken, dissipated
 
 

@@ -15,6 +15,7 @@ A minimum does not depend on the order of points, and which points can come near
 again from where they are, so that a checkpoint need not hold any of it.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -24,7 +25,7 @@ from numpy.typing import NDArray
 from materials.compilation import named
 from mpm_core.basis import Basis
 from mpm_core.body import Body
-from mpm_core.boundary import Wall, WallKind
+from mpm_core.boundary import WallKind
 from mpm_core.columns import DENSITY, X, Y
 from mpm_core.grid import Grid
 from mpm_core.reach import DRIFT
@@ -35,59 +36,75 @@ ROUND_OFF = 1e-9
 
 
 class Contact:
-    """The points that may come into the support of the rows of friction walls before the next sort."""
+    """The points that may come into the support of the rows of friction walls before the next sort.
+
+    `rows` are those of walls (`boundary.HELD_ROW`).
+    """
 
     def __init__(
-        self, walls: Sequence[Wall], bodies: Sequence[Body], grid: Grid, basis: Basis, periodic_axes: Sequence[int]
+        self,
+        rows: NDArray[np.void],
+        bodies: Sequence[Body],
+        grid: Grid,
+        basis: Basis,
+        periodic_axes: Sequence[int],
     ) -> None:
+        self.rows = rows
         self.bodies = bodies
         self.grid = grid
         self.basis = basis
-        self.periodic_axes = periodic_axes
-        self.near = {
-            wall: [self._near(wall, body) for body in bodies] for wall in walls if wall.kind is WallKind.FRICTION
-        }
-        self.unlimited = [np.full(length, np.inf) for length in grid.shape]
+        self.joined = [int(row) for row in np.flatnonzero(np.isin(1 - rows["axis"], periodic_axes))]
+        self.near = [self._near(body) for body in bodies]
+        self._gaps = np.empty((len(rows), max(grid.shape)))
 
-    def _near(self, wall: Wall, body: Body) -> NDArray[np.int64]:
-        away = np.abs(body.points[(X, Y)[wall.axis]] - _place(wall, self.grid))
+    def _near(self, body: Body) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Numbers of the points of a body that are near each row, row after row, and where those of each row begin."""
+        nothing = np.empty(0, np.int64)
+        found = [self._near_row(body, row) if row["kind"] == WallKind.FRICTION else nothing for row in self.rows]
+        return np.concatenate([nothing, *found]), np.cumsum([0, *map(len, found)])
+
+    def _near_row(self, body: Body, row: np.void) -> NDArray[np.int64]:
+        away = np.abs(body.points[(X, Y)[row["axis"]]] - row["place"])
         return np.flatnonzero(away < (0.5 * self.basis.width + DRIFT) * self.grid.cell_size)
 
-    def gaps(self, wall: Wall) -> NDArray[np.float64]:
-        """The gap [m] of each node along a wall; infinite where no point is in its support, or no gap is asked for."""
-        grid, basis, other = self.grid, self.basis, 1 - wall.axis
-        if wall not in self.near:
-            return self.unlimited[other]
-        gaps = self.unlimited[other].copy()
-        axes = (_place(wall, grid), grid.origin[other], grid.cell_size)
-        for body, near in zip(self.bodies, self.near[wall], strict=True):
+    def gaps(self) -> NDArray[np.float64]:
+        """The gap [m] of each node along each row; infinite where no point is in its support, or no gap is asked for.
+
+        One array for all steps, shape (rows, nodes along the longer side of the grid).
+        """
+        gaps, grid, basis = self._gaps, self.grid, self.basis
+        gaps.fill(math.inf)
+        for body, (near, starts) in zip(self.bodies, self.near, strict=True):
             if len(near) > 0:
-                away, along = body.points[(X, Y)[wall.axis]], body.points[(X, Y)[other]]
-                size = (body.point_mass, body.points[DENSITY], body.initial_density)
-                _narrow(near, away, along, *size, *axes, basis.offset, basis.width, gaps)
-        if other in self.periodic_axes:
-            copies = len(gaps) - grid.cells[other]
-            gaps[:copies] = gaps[-copies:] = np.minimum(gaps[:copies], gaps[-copies:])
+                points = body.storage, body.point_mass, body.initial_density
+                _narrow(near, starts, self.rows, *points, grid.origin, grid.cell_size, basis.offset, basis.width, gaps)
+        for number in self.joined:
+            self._join(gaps[number], 1 - int(self.rows[number]["axis"]))
         return gaps
 
-
-def _place(wall: Wall, grid: Grid) -> float:
-    return grid.lower[wall.axis] if wall.is_lower else grid.upper[wall.axis]
+    def _join(self, gaps: NDArray[np.float64], along: int) -> None:
+        """Give nodes that are one and the same across a periodic axis the least of their gaps."""
+        nodes, cells = self.grid.shape[along], self.grid.cells[along]
+        first, last = gaps[: nodes - cells], gaps[cells:nodes]
+        first[:] = last[:] = np.minimum(first, last)
 
 
 @njit(error_model="numpy", cache=True)
 @named(CORE_MARK)
 def _narrow(  # type: ignore[no-untyped-def]
-    near, away, along, mass, density, least_density, place, origin, cell_size, offset, width, gaps
+    near, starts, rows, storage, mass, least_density, origin, cell_size, offset, width, gaps
 ):
     inverse_size = 1.0 / cell_size
     farthest, nothing = 0.5 * width * cell_size, ROUND_OFF * cell_size
-    last_first = len(gaps) - width
-    for p in near:
-        distance = abs(away[p] - place)
-        if distance < farthest:
-            gap = distance - 0.5 * np.sqrt(mass / max(density[p], least_density))
-            gap = gap if gap > nothing else 0.0
-            first = min(int((along[p] - origin) * inverse_size - offset), last_first)
-            for node in range(first, first + width):
-                gaps[node] = min(gaps[node], gap)
+    for number in range(len(rows)):
+        row, nodes = rows[number], gaps[number]
+        away, along = (storage[X], storage[Y]) if row.axis == 0 else (storage[Y], storage[X])
+        place, start, last_first = row.place, origin[1 - row.axis], len(nodes) - width
+        for p in near[starts[number] : starts[number + 1]]:
+            distance = abs(away[p] - place)
+            if distance < farthest:
+                gap = distance - 0.5 * np.sqrt(mass / max(storage[DENSITY, p], least_density))
+                gap = gap if gap > nothing else 0.0
+                first = min(int((along[p] - start) * inverse_size - offset), last_first)
+                for node in range(first, first + width):
+                    nodes[node] = min(nodes[node], gap)

@@ -2,6 +2,7 @@
 
 import numpy as np
 from numba import njit, prange
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from materials.compilation import named
@@ -26,14 +27,12 @@ def clear(nodes: NDArray[np.float64], grid: Grid, reach: Reach) -> None:
     _clear(nodes, grid.shape[1], reach)
 
 
-def update_velocities(grid: Grid, reach: Reach, gravity: tuple[float, float], dt: float) -> None:
-    """Turn what was scattered into old velocity and new velocity v + dt (f/m + g) [m/s]."""
-    _update(grid.nodes, grid.shape[1], reach, np.array([dt * gravity[0], dt * gravity[1], 0.0, 0.0]), dt)
+def update_nodes(grid: Grid, reach: Reach, gravity: tuple[float, float], dt: float, ties: bool) -> None:
+    """Turn what was scattered into old velocity and new velocity v + dt (f/m + g) [m/s].
 
-
-def average_surroundings(grid: Grid, reach: Reach) -> None:
-    """Turn the volumes and pressures that were scattered into the averages of which `volumes` are tied."""
-    _average(grid.nodes, grid.shape[1], reach, *grid.rooms, grid.cell_size**2)
+    If `ties`, turn the volumes and pressures as well, into the averages of which `volumes` are tied.
+    """
+    _update(grid.nodes, grid.shape[1], reach, gravity[0], gravity[1], dt, ties, *grid.rooms, grid.cell_size**2)
 
 
 @njit(parallel=True, cache=True)
@@ -47,28 +46,26 @@ def _clear(nodes, nodes_y, reach):  # type: ignore[no-untyped-def]
 
 @njit(parallel=True, error_model="numpy", cache=True)
 @named(CORE_MARK)
-def _update(nodes, nodes_y, reach, impulse, dt):  # type: ignore[no-untyped-def]
+def _update(nodes, nodes_y, reach, gravity_x, gravity_y, dt, ties, rooms_x, rooms_y, cell):  # type: ignore[no-untyped-def]
+    impulse = np.array([dt * gravity_x, dt * gravity_y, 0.0, 0.0])
     for i in prange(reach.first_column, reach.last_column + 1):
+        fall = quad_at(impulse, 0)
         for j in range(reach.first_rows[i], reach.last_rows[i] + 1):
             node = np.uint64((i * nodes_y + j) * COMPONENTS)
             mass = nodes[node + np.uint64(MASS)]
             if mass > 0.0:
                 old_and_push = quad_at(nodes, node) * (1.0 / mass)
                 push_and_old = halves_swapped(old_and_push)
-                new = old_and_push + dt * push_and_old + quad_at(impulse, 0)
+                new = old_and_push + dt * push_and_old + fall
                 put_quad(nodes, node, halves_joined(new, push_and_old))
+                if ties:
+                    _average(nodes, node, mass, cell * rooms_x[i] * rooms_y[j])
 
 
-@njit(parallel=True, error_model="numpy", cache=True)
-@named(CORE_MARK)
-def _average(nodes, nodes_y, reach, rooms_x, rooms_y, cell):  # type: ignore[no-untyped-def]
-    for i in prange(reach.first_column, reach.last_column + 1):
-        for j in range(reach.first_rows[i], reach.last_rows[i] + 1):
-            node = np.uint64((i * nodes_y + j) * COMPONENTS)
-            mass = nodes[node + np.uint64(MASS)]
-            if mass > 0.0:
-                volume = nodes[node + np.uint64(VOLUME)]
-                per_volume = 1.0 / volume
-                nodes[node + np.uint64(NODE_CROWDING)] = crowding_of(volume, cell * rooms_x[i] * rooms_y[j])
-                nodes[node + np.uint64(NODE_PRESSURE)] = nodes[node + np.uint64(VOLUME_PRESSURE)] * per_volume
-                nodes[node + np.uint64(NODE_DENSITY)] = mass * per_volume
+@register_jitable(forceinline=True)
+def _average(nodes, node, mass, room):  # type: ignore[no-untyped-def]
+    volume = nodes[node + np.uint64(VOLUME)]
+    per_volume = 1.0 / volume
+    nodes[node + np.uint64(NODE_CROWDING)] = crowding_of(volume, room)
+    nodes[node + np.uint64(NODE_PRESSURE)] = nodes[node + np.uint64(VOLUME_PRESSURE)] * per_volume
+    nodes[node + np.uint64(NODE_DENSITY)] = mass * per_volume

@@ -11,7 +11,7 @@ from mpm_core import momentum
 from mpm_core.basis import BASES
 from mpm_core.body import Body
 from mpm_core.body_force import BodyForce, scatter_body_force
-from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_wall, is_in_reach, join_periodic
+from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_walls, join_periodic, rows_in_reach
 from mpm_core.columns import LXX, LYY, X, Y
 from mpm_core.contact import Contact
 from mpm_core.elastic_energy import elastic_energy
@@ -114,11 +114,12 @@ class Simulation:
         self.steps = 0
         self.drift = math.inf
         self.reach = nothing_in_reach(self.grid)
-        self.walls_in_reach: list[Wall] = []
-        self.contact = Contact((), (), self.grid, self.basis, self.periodic_axes)
+        self.contact = self._contact()
         kinetic = sum(0.5 * body.point_mass * float((body.velocities**2).sum()) for body in self.bodies)
         self.ledger = Ledger(kinetic, kinetic, initial_elastic)
         self.sleep = self._sleep()
+        # No signal is slower than a fall through one cell, for material without stiffness.
+        self.free_fall_speed = math.sqrt(math.hypot(*scene.gravity) * self.grid.cell_size)
         self.signal_bounds = [signal_bounds(body.law, body.parameters, body.initial_density) for body in self.bodies]
         self.measure_signals()
         first = self.scene.time.step or self.adaptive_step()
@@ -148,13 +149,10 @@ class Simulation:
                 scatter_body_force(body, self.body_force(body, self.time), grid, self.basis)
         for axis in self.periodic_axes:
             join_periodic(grid.nodes, grid, axis)
-        momentum.update_velocities(grid, self.reach, self.scene.gravity, kick)
-        if tied > 0.0:
-            momentum.average_surroundings(grid, self.reach)
-        for wall in self.walls_in_reach:
-            taken = hold_at_wall(grid, wall, self.reach, self.contact.gaps(wall), dt)
-            self.ledger.wall_work += taken.work
-            self.ledger.wall_friction += taken.friction
+        momentum.update_nodes(grid, self.reach, self.scene.gravity, kick, ties=tied > 0.0)
+        taken = hold_at_walls(grid, self.contact.rows, self.contact.gaps(), dt)
+        self.ledger.wall_work += taken.work
+        self.ledger.wall_friction += taken.friction
         hold_nodes(grid, self.held_nodes)
         if self.sleep is not None:
             self.sleep.hold(self.reach)
@@ -190,7 +188,7 @@ class Simulation:
     def _signal_speed(self, reported: list[tuple[float, float]]) -> float:
         """The speed [m/s] that bounds the step, from the fastest signal and the fastest point of each body."""
         pairs = zip(self.signal_bounds, reported, strict=True)
-        return self._at_least_free_fall(max(bounds.speed(*found) for bounds, found in pairs))
+        return max(self.free_fall_speed, *(bounds.speed(*found) for bounds, found in pairs))
 
     def elastic_energy(self) -> float:
         """The present elastic energy of all bodies per width [J/m]; NaN where a law does not state its energy."""
@@ -243,8 +241,11 @@ class Simulation:
         """Work on these nodes until the next sort, and leave zeros everywhere else."""
         momentum.clear(self.grid.nodes, self.grid, self.reach)
         self.reach = reach
-        self.walls_in_reach = [wall for wall in self.walls if is_in_reach(self.grid, wall, self.reach)]
-        self.contact = Contact(self.walls_in_reach, self.bodies, self.grid, self.basis, self.periodic_axes)
+        self.contact = self._contact()
+
+    def _contact(self) -> Contact:
+        rows = rows_in_reach(self.walls, self.grid, self.reach)
+        return Contact(rows, self.bodies, self.grid, self.basis, self.periodic_axes)
 
     def _take_reports(self, dt: float) -> None:
         reports = [step_report(body.transfer_reports, body.stress_reports) for body in self.bodies]
@@ -266,10 +267,6 @@ class Simulation:
             risen=-dt * (gravity_x * whole.moved_x + gravity_y * whole.moved_y),
             worked=whole.internal_work,
         )
-
-    def _at_least_free_fall(self, speed: float) -> float:
-        """A signal speed no less than that of a fall through one cell, for material without stiffness."""
-        return max(speed, math.sqrt(math.hypot(*self.scene.gravity) * self.grid.cell_size))
 
     def _refuse_lost_points(self, report: StepReport) -> None:
         limits = ((report.lowest_x, report.highest_x), (report.lowest_y, report.highest_y))
