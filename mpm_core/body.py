@@ -135,8 +135,7 @@ class Body:
 
     def sort(self, grid: Grid, basis: Basis, threads: int) -> None:
         """Bring the points that are awake into the order of their stencils and cut them into stripes."""
-        where = grid.origin, grid.cell_size, basis.offset
-        order, self.stripe_starts = sort_by_stencil(self.points_awake, *where)
+        order, self.stripe_starts = sort_by_stencil(self.points_awake, grid.origin, grid.cell_size, basis)
         reorder(self.storage, self.ids, 0, order)
         self.share_between(threads)
 

@@ -1,8 +1,10 @@
 """Keeping points sorted by the cell of their stencil: cache-friendly transfers, and stripes that threads can share.
 
-A stripe is STRIPE columns of stencils. Between two sorts no point may drift by more than one cell, so that a stripe
-reaches at most one column further on either side, plus its stencil; stripes of equal parity then share no node if a
-stripe is wider than a stencil.
+A stripe is some columns of stencils. Between two sorts no point may drift by more than one cell, so that a stripe
+reaches at most one column further on either side, plus its stencil; stripes of equal parity then share no node if each
+stripe is wider than a stencil. Stripes hold as many points as one another, and each parity has as many as two or four
+threads can share equally. They follow from where the points are alone, so that sums are the same for any number of
+threads.
 """
 
 import numpy as np
@@ -10,17 +12,18 @@ from numba import njit, prange
 from numpy.typing import NDArray
 
 from materials.compilation import named
-from mpm_core.basis import first_node
+from mpm_core.basis import Basis, first_node
+from mpm_core.blocks import EQUAL_SHARES
 from mpm_core.columns import X, Y
 from mpm_core.sources import CORE_MARK
 
-# One more than the nodes of the widest stencil: the narrower, the more evenly threads share them.
-STRIPE = 5
 LONGEST_DRIFT = 0.9
+# Stripes come in multiples of the first, so that four threads have equal shares of each parity; else of the second.
+STRIPES_IN_TURN = (2 * EQUAL_SHARES, EQUAL_SHARES)
 
 
 def sort_by_stencil(
-    points: NDArray[np.float64], origin: tuple[float, float], cell_size: float, offset: float
+    points: NDArray[np.float64], origin: tuple[float, float], cell_size: float, basis: Basis
 ) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
     """The stable order of points by column and row of their stencil, and the first point of each stripe.
 
@@ -28,7 +31,7 @@ def sort_by_stencil(
     """
     if points.shape[1] == 0:
         return np.empty(0, np.int32), np.zeros(1, np.int64)
-    return _counting_sort(points, *origin, cell_size, offset)
+    return _counting_sort(points, *origin, cell_size, basis.offset, basis.width + 1)
 
 
 @njit(cache=True)
@@ -41,7 +44,37 @@ def _limits(places, origin, cell_size, offset):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 @named(CORE_MARK)
-def _counting_sort(points, origin_x, origin_y, cell_size, offset):  # type: ignore[no-untyped-def]
+def _stripe_starts(before, narrowest):  # type: ignore[no-untyped-def]
+    """The first point of each stripe, and the one behind its last, from the points before each column."""
+    columns = len(before) - 1
+    most = max(1, columns // narrowest)
+    for together in STRIPES_IN_TURN:
+        for count in range(most - most % together, 0, -together):
+            limits = _equal_parts(before, count)
+            if np.diff(limits).min() >= narrowest:
+                return before[limits]
+    return before[np.arange(most + 1) * columns // most]
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def _equal_parts(before, count):  # type: ignore[no-untyped-def]
+    """The columns at which parts begin: of each parity, the first so many hold about as many times the points of one."""
+    limits, held = np.zeros(count + 1, np.int64), np.zeros(2)
+    for part in range(count):
+        held_before = held[part % 2] - before[limits[part]]
+        target = before[-1] * (part // 2 + 1) / count - held_before
+        column = min(np.searchsorted(before, target), len(before) - 1)
+        is_beyond = column > limits[part] and target - before[column - 1] < before[column] - target
+        limits[part + 1] = column - 1 if is_beyond else column
+        held[part % 2] = held_before + before[limits[part + 1]]
+    limits[count] = len(before) - 1
+    return limits
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def _counting_sort(points, origin_x, origin_y, cell_size, offset, narrowest):  # type: ignore[no-untyped-def]
     count = points.shape[1]
     x, y = points[X], points[Y]
     first_x, columns = _limits(x, origin_x, cell_size, offset)
@@ -55,10 +88,7 @@ def _counting_sort(points, origin_x, origin_y, cell_size, offset):  # type: igno
         starts[keys[p] + 1] += 1
     for key in range(columns * rows):
         starts[key + 1] += starts[key]
-    stripes = -(-columns // STRIPE)
-    stripe_starts = np.empty(stripes + 1, np.int64)
-    for stripe in range(stripes + 1):
-        stripe_starts[stripe] = starts[min(stripe * STRIPE, columns) * rows]
+    stripe_starts = _stripe_starts(starts[::rows].copy(), narrowest)
     order = np.empty(count, np.int32)
     for p in range(count):
         order[starts[keys[p]]] = p

@@ -8,7 +8,6 @@ from scenes_for_tests import BLOCK, COLUMN, momentum, simulation
 
 from materials import InputError
 from mpm_core.columns import DENSITY, SXX, SXY, SYY, VX, VY, X, Y
-from mpm_core.contact import Contact
 from mpm_core.scene import FEWEST_PERIODIC_CELLS
 
 G = 9.81
@@ -95,12 +94,13 @@ def test_a_layer_that_falls_across_periodic_sides_stays_flat():
 
 def test_the_gap_of_a_node_is_that_of_the_lowest_point_in_its_support():
     case = simulation(BLOCK, {"boundary.bottom": {"kind": "friction", "coefficient": 0.5}})
-    (wall,) = (wall for wall in case.walls if wall.side == "bottom")
     (body,) = case.bodies
     body.points[Y] -= 0.15
 
     def gaps():
-        return Contact(case.walls, case.bodies, case.grid, case.basis, ()).gaps(wall)
+        case.find_reach()
+        (found,) = case.contact.gaps()
+        return found
 
     expected = np.full(case.grid.shape[0], np.inf)
     # The block from 0.3 to 0.7 m; nodes lie 0.1 m apart and begin at -0.2 m.

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from materials.registry import get_material
 from mpm_core.body import Body
-from mpm_core.boundary import Wall
 from mpm_core.columns import VX, Y
 from mpm_core.contact import Contact
 from mpm_core.scene import Scene
@@ -33,9 +32,9 @@ LAWS: dict[str, dict[str, Any]] = {
 class FeltAtOnce(Contact):
     """The mistake: a wall that is felt as soon as the shape function of its row reaches a point."""
 
-    def gaps(self, wall: Wall) -> NDArray[np.float64]:
+    def gaps(self) -> NDArray[np.float64]:
         """No gap anywhere."""
-        return np.zeros(self.grid.shape[1 - wall.axis])
+        return np.zeros((len(self.rows), max(self.grid.shape)))
 
 
 class WithoutGaps(Simulation):
@@ -44,7 +43,7 @@ class WithoutGaps(Simulation):
     def find_reach(self) -> None:
         """Find the nodes in reach, and forget the points near walls."""
         super().find_reach()
-        self.contact = FeltAtOnce(self.walls, self.bodies, self.grid, self.basis, self.periodic_axes)
+        self.contact = FeltAtOnce(self.contact.rows, self.bodies, self.grid, self.basis, self.periodic_axes)
 
 
 def block(law: str, cell: float, lower: float, kind: type[Simulation], velocity: float = 0.0) -> Simulation:
