@@ -59,7 +59,7 @@ def _stripe_starts(before, narrowest):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 @named(CORE_MARK)
 def _equal_parts(before, count):  # type: ignore[no-untyped-def]
-    """The columns at which parts begin: of each parity, the first so many hold about as many times the points of one."""
+    """The columns at which parts begin: of each parity, the first k hold about k times the points of one."""
     limits, held = np.zeros(count + 1, np.int64), np.zeros(2)
     for part in range(count):
         held_before = held[part % 2] - before[limits[part]]

@@ -1,5 +1,7 @@
 """Points in stripes: of one parity no two share a node, and two threads have equal shares of each."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -45,7 +47,7 @@ def test_stripes_of_one_parity_share_no_node_when_points_have_drifted_by_a_cell(
     assert len(np.concatenate(stripes)) == 4 * PILES[pile].sum()
     for parity in (0, 1):
         held = [stripe for stripe in stripes[parity::2] if len(stripe) > 0]
-        for left, right in zip(held, held[1:], strict=False):
+        for left, right in pairwise(held):
             assert left.max() + 1 + basis.width - 1 < right.min() - 1
 
 
@@ -56,5 +58,5 @@ def test_two_threads_have_equal_shares_of_each_parity(pile):
     counts, tallest = np.diff(starts), 4 * heights.max()
     assert len(counts) % EQUAL_SHARES == 0
     for shares in balanced_shares(starts, 2):
-        first, second = (counts[a:b:2].sum() for a, b in zip(shares, shares[1:], strict=False))
+        first, second = (counts[a:b:2].sum() for a, b in pairwise(shares))
         assert abs(int(first) - int(second)) <= tallest
