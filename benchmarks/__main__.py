@@ -27,7 +27,9 @@ from benchmarks.tables import (
     race_table,
     roofline_table,
     size_table,
+    two_cores_table,
 )
+from benchmarks.two_cores import gain_of_two_cores
 from mpm_core.threads import cores
 from validation.collapses import SCENES
 
@@ -38,6 +40,7 @@ class Part(StrEnum):
     PASSES = "passes"
     YARDSTICK = "yardstick"
     SIZES = "sizes"
+    CORES = "cores"
     DOMAIN = "domain"
     MEMORY = "memory"
     PLANS = "plans"
@@ -60,7 +63,7 @@ FULL = Effort(
     cell_size=0.00625,
     end=1.5,
     sizes=(1e4, 1e5, 4e5, 1.6e6, 4e6),
-    rounds=3,
+    rounds=5,
     pass_steps=300,
     working_sets=(2**18, 2**20, 2**22, 2**24, 2**26, 3 * 2**28),
     scenes=FORECAST_SCENES,
@@ -135,8 +138,17 @@ def _sizes(record: Record, materials: list[str], effort: Effort, roofline: Roofl
         record.add("sizes", found, size_table(material, found))
 
 
+def _two_cores(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+    if cores() < 2:
+        return
+    cell_sizes = [effort.cell_size, *(cell_size_for(points) for points in effort.sizes[1:-1])]
+    for material in materials:
+        found = [gain_of_two_cores(material, cell_size, 3 * effort.rounds) for cell_size in cell_sizes]
+        record.add("cores", found, two_cores_table(material, found))
+
+
 def _domain(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
-    found = cost_over_domain(materials[0], effort.cell_size, (1, 10), 5 * effort.rounds)
+    found = cost_over_domain(materials[0], effort.cell_size, (1, 10), 3 * effort.rounds)
     record.add("domain", found, domain_table(materials[0], found))
 
 
@@ -159,6 +171,7 @@ MEASURES: dict[Part, Callable[[Record, list[str], Effort, Roofline], None]] = {
     Part.PASSES: _passes,
     Part.YARDSTICK: _yardstick,
     Part.SIZES: _sizes,
+    Part.CORES: _two_cores,
     Part.DOMAIN: _domain,
     Part.MEMORY: _memory,
     Part.PLANS: _plans,

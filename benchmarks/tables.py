@@ -10,6 +10,7 @@ from benchmarks.report import Table
 from benchmarks.roofline import Roofline
 from benchmarks.sizes import Cost
 from benchmarks.timing import Spread
+from benchmarks.two_cores import TwoCores
 
 
 def machine_table(machine: Mapping[str, str]) -> Table:
@@ -77,15 +78,25 @@ def size_table(material: str, costs: Sequence[Cost]) -> Table:
             _range(cost.nanoseconds, 1.0, ".1f"),
             _range(cost.cpu_nanoseconds, 1.0, ".1f"),
             f"{alone[cost.points] / cheapest:.2f}" if cost.threads == 1 else "",
-            "" if cost.threads == 1 else f"{alone[cost.points] / cost.nanoseconds.median:.2f}",
+            "" if cost.gain is None else _range(cost.gain, 1.0, ".2f"),
         )
         for cost in costs
     )
     headings = (
         *("points", "threads", "million point-steps/s", "ns per point-step", "processor ns"),
-        *("over the cheapest size", "over one thread"),
+        *("over the cheapest size", "over one thread, round by round"),
     )
     return Table(f"Cost over size, moving column, {material}", headings, rows)
+
+
+def two_cores_table(material: str, gains: Sequence[TwoCores]) -> Table:
+    """What two threads gain, and what two cores have to give."""
+    rows = tuple(
+        (f"{gain.points:,}", *(_range(found, 1.0, ".2f") for found in (gain.threads, gain.runs, gain.share)))
+        for gain in gains
+    )
+    headings = ("points", "two threads over one", "two runs at once over one", "threads over runs")
+    return Table(f"Two cores, moving column, {material}", headings, rows)
 
 
 def domain_table(material: str, costs: Sequence[tuple[int, Cost]]) -> Table:
