@@ -36,13 +36,6 @@ def moving_column(material: str, cell_size: float, threads: int = 1, domain_fact
     return simulation
 
 
-def share_between(simulation: Simulation, threads: int) -> None:
-    """Go on with another number of threads."""
-    simulation.threads = threads
-    for body in simulation.bodies:
-        body.share_between(threads)
-
-
 def make_steps(simulation: Simulation, count: int) -> None:
     """Take steps on the simulation's own number of threads."""
     use_threads(simulation.threads)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from benchmarks.columns import make_steps, moving_column, share_between
+from benchmarks.columns import make_steps, moving_column
 from benchmarks.timing import Duration, Spread, spread, taking_turns
 from mpm_core.simulation import Simulation
 
@@ -68,7 +68,7 @@ class _Turn:
         self.steps = steps_of_a_turn(self.points)
 
     def __call__(self) -> None:
-        share_between(self.column, self.threads)
+        self.column.threads = self.threads
         make_steps(self.column, self.steps)
 
 

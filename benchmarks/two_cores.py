@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import partial
 from multiprocessing.connection import Connection
 
-from benchmarks.columns import make_steps, moving_column, share_between
+from benchmarks.columns import make_steps, moving_column
 from benchmarks.sizes import steps_of_a_turn
 from benchmarks.timing import Spread, spread, timed
 
@@ -66,7 +66,7 @@ def _serve(connection: Connection, material: str, cell_size: float) -> None:
     connection.send(column.bodies[0].count)
     while (order := connection.recv()) is not None:
         steps, threads = order
-        share_between(column, threads)
+        column.threads = threads
         make_steps(column, 1)
         connection.send(timed(partial(make_steps, column, steps)).wall)
 

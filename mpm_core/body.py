@@ -17,7 +17,7 @@ from mpm_core.grid_to_points import REPORTS as TRANSFER_REPORTS
 from mpm_core.grid_to_points import make_grid_to_points
 from mpm_core.points_to_grid import make_points_to_grid
 from mpm_core.quads import LANES
-from mpm_core.sorting import balanced_shares, reorder, sort_by_stencil
+from mpm_core.sorting import reorder, sort_by_stencil
 from mpm_core.stress import MAX_SIGNAL_SPEED, make_stress_pass
 from mpm_core.stress import REPORTS as STRESS_REPORTS
 
@@ -53,7 +53,6 @@ class Body:
         self.first_id = first_id
         self.ids = np.arange(first_id, first_id + count, dtype=np.int32)
         self.stripe_starts = np.zeros(1, np.int64)
-        self.shares = (np.zeros(1, np.int64), np.zeros(1, np.int64))
         self.signal_speed_asleep = 0.0
         self.set_awake(count)
         self._points_to_grid: Callable[..., Any]
@@ -115,7 +114,7 @@ class Body:
         self._tying_grid_to_points = make_grid_to_points(basis, ties, spreads and ties)
         self._stress_pass = make_stress_pass(pointwise_law(self.law), self._keeps_shear_strain)
         no_points, parameters = (self.storage, 0), tuple(self.parameters)
-        explained(self.law, self._stress_pass, *no_points, 1.0, parameters, 0.0, 0.0, 0.0, self.stress_reports[:0])
+        explained(self.law, self._stress_pass, *no_points, 1.0, parameters, 0.0, 0.0, 0.0, 1, self.stress_reports[:0])
 
     @property
     def velocities(self) -> NDArray[np.float64]:
@@ -133,11 +132,10 @@ class Body:
                 fastest = max(fastest, self.law.sound_speed(stress, density, self.law.state(*state), self.parameters))
         return fastest + float(np.sqrt((self.velocities**2).sum(axis=0).max()))
 
-    def sort(self, grid: Grid, basis: Basis, threads: int) -> None:
+    def sort(self, grid: Grid, basis: Basis) -> None:
         """Bring the points that are awake into the order of their stencils and cut them into stripes."""
         order, self.stripe_starts = sort_by_stencil(self.points_awake, grid.origin, grid.cell_size, basis)
         reorder(self.storage, self.ids, 0, order)
-        self.share_between(threads)
 
     def divide(self, asleep: NDArray[np.bool_]) -> None:
         """Put the points that are to sleep, of all, behind the others; the speed of those that fall asleep is zero.
@@ -154,32 +152,23 @@ class Body:
         awake = len(asleep) - int(np.count_nonzero(asleep))
         self.set_awake(min(len(asleep), -(-awake // LANES) * LANES))
 
-    def share_between(self, threads: int) -> None:
-        """Share the stripes between threads."""
-        self.shares = balanced_shares(self.stripe_starts, threads)
-
-    def to_grid(self, grid: Grid) -> None:
+    def to_grid(self, grid: Grid, threads: int) -> None:
         """Scatter mass, momentum and internal force of the points that are awake."""
-        self._scatter(self.stripe_starts, self.shares, grid.nodes, grid)
+        self._scatter(self.stripe_starts, threads, grid.nodes, grid)
 
     def sleepers_to_grid(self, nodes: NDArray[np.float64], grid: Grid) -> None:
         """Scatter what the sleeping points bring to nodes of their own, in the order in which they lie."""
         # A single stripe, to one thread: nobody waits for it.
-        stripe_starts = np.array([self.awake, self.count])
-        self._scatter(stripe_starts, balanced_shares(stripe_starts, 1), nodes, grid)
+        self._scatter(np.array([self.awake, self.count]), 1, nodes, grid)
 
     def _scatter(
-        self,
-        stripe_starts: NDArray[np.int64],
-        shares: tuple[NDArray[np.int64], NDArray[np.int64]],
-        nodes: NDArray[np.float64],
-        grid: Grid,
+        self, stripe_starts: NDArray[np.int64], threads: int, nodes: NDArray[np.float64], grid: Grid
     ) -> None:
         self._points_to_grid(
             self.storage,
             self.point_mass,
             stripe_starts,
-            shares,
+            threads,
             nodes,
             grid.shape[1],
             grid.ghosts,
@@ -187,7 +176,7 @@ class Body:
             grid.cell_size,
         )
 
-    def from_grid(self, grid: Grid, dt: float, memory: float, ties: bool = False) -> None:
+    def from_grid(self, grid: Grid, dt: float, memory: float, threads: int, ties: bool = False) -> None:
         """Gather velocity and its gradient, and where volumes are to be tied what that needs; move the points."""
         transfer = self._tying_grid_to_points if ties else self._grid_to_points
         transfer(
@@ -201,6 +190,7 @@ class Body:
             grid.cell_size,
             dt,
             memory,
+            threads,
             self.transfer_reports,
         )
 
@@ -209,7 +199,7 @@ class Body:
         coordinate = self.points[(X, Y)[axis]]
         coordinate[:] = lower + np.mod(coordinate - lower, period)
 
-    def update_stress(self, dt: float, tied: float = 0.0, exchange: float = 0.0) -> None:
+    def update_stress(self, dt: float, tied: float = 0.0, exchange: float = 0.0, threads: int = 1) -> None:
         """Rotate the stress, bring the density forward, call the law.
 
         `tied` is the time [s] for which the volumes of loose grains are tied in this step, `exchange` that time over
@@ -217,7 +207,7 @@ class Body:
         """
         tied, parameters = tied if self.is_loose else 0.0, tuple(self.parameters)
         points = self.storage, self.awake
-        self._stress_pass(*points, self.point_mass, parameters, dt, tied, exchange, self.stress_reports)
+        self._stress_pass(*points, self.point_mass, parameters, dt, tied, exchange, threads, self.stress_reports)
 
     def state(self, name: str) -> NDArray[np.float64]:
         """A state variable of all points, in their present order. Raises InputError for an unknown name."""

@@ -30,6 +30,7 @@ from mpm_core.basis import Basis
 from mpm_core.blocks import points_of_block
 from mpm_core.columns import AXX, AXY, AYX, AYY, CROWDING, LXX, LXY, LYX, LYY, MEAN_AROUND, SXX, SYY, VX, VY, X, Y
 from mpm_core.grid import BULK, COMPONENTS, NEW_VX
+from mpm_core.parts import next_part, shares_of, threads_of
 from mpm_core.quads import (
     LANES,
     filled,
@@ -291,26 +292,31 @@ def make_grid_to_points(basis: Basis, ties: bool, spreads: bool) -> Callable[...
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{basis.name}_{ties:d}{spreads:d}_{CORE_MARK}")
     def grid_to_points(  # type: ignore[no-untyped-def]
-        storage, count, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, memory, reports
+        storage, count, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, memory, threads, reports
     ):
         rows, inverse_size = rows_of(storage, OF_EVERY_LAW), 1.0 / cell_size
-        for block in prange(reports.shape[0]):
+        shares = shares_of(reports.shape[0], threads)
+        for thread in prange(threads_of(shares)):
             receiving, room = room_for_receiving(), np.empty((7, GROUP * LANES))
             velocities, bulk = Gathered(room[0], room[1], room[2]), Gathered(room[3], room[4], room[5])
-            energies, sums = room[6], no_sums()
-            begin, end = points_of_block(block, reports.shape[0], count)
-            for start in range(begin, end, GROUP):
-                first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
-                for p in range(first, last, LANES):
-                    put_receiving(rows, p, p - first, nodes_y, ghosts, origin, inverse_size, receiving)
-                gather_velocities(last - first, nodes, nodes_y, receiving, velocities)
-                updated_gradients(rows, first, last, cell_size, memory, receiving, velocities, energies)
-                if ties:
-                    gather_bulk(last - first, nodes, nodes_y, receiving, bulk)
-                    updated_surroundings(rows, first, last, bulk)
-                sums = moved(rows, first, last, dt, memory, velocities, energies, sums)
-                if spreads:
-                    spread(rows, first, last, cell_size, dt, receiving, bulk)
-            report(reports, block, point_mass, sums)
+            energies = room[6]
+            block = next_part(shares, thread)
+            while block >= 0:
+                sums = no_sums()
+                begin, end = points_of_block(block, reports.shape[0], count)
+                for start in range(begin, end, GROUP):
+                    first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
+                    for p in range(first, last, LANES):
+                        put_receiving(rows, p, p - first, nodes_y, ghosts, origin, inverse_size, receiving)
+                    gather_velocities(last - first, nodes, nodes_y, receiving, velocities)
+                    updated_gradients(rows, first, last, cell_size, memory, receiving, velocities, energies)
+                    if ties:
+                        gather_bulk(last - first, nodes, nodes_y, receiving, bulk)
+                        updated_surroundings(rows, first, last, bulk)
+                    sums = moved(rows, first, last, dt, memory, velocities, energies, sums)
+                    if spreads:
+                        spread(rows, first, last, cell_size, dt, receiving, bulk)
+                report(reports, block, point_mass, sums)
+                block = next_part(shares, thread)
 
     return grid_to_points

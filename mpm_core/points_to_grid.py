@@ -29,6 +29,7 @@ from materials.tensor import THIRD
 from mpm_core.basis import Basis
 from mpm_core.columns import AXX, AXY, AYX, AYY, DENSITY, SXX, SXY, SYY, SZZ, VX, VY
 from mpm_core.grid import BULK, COMPONENTS, PRECISIONS
+from mpm_core.parts import next_part, shares_of, threads_of
 from mpm_core.quads import LANES, filled, put_quad, quad_at
 from mpm_core.rows import OF_EVERY_LAW, rows_of
 from mpm_core.scatter import make_scatter
@@ -93,10 +94,7 @@ def make_put_weights(basis: Basis) -> Callable[..., Any]:
 
 @cache
 def make_points_to_grid(basis: Basis, precision: str) -> Callable[..., Any]:
-    """Scatter mass, volume, pressure, momentum and internal force to the grid.
-
-    `shares` are those of the stripes of each parity (`sorting.balanced_shares`).
-    """
+    """Scatter mass, volume, pressure, momentum and internal force to the grid."""
     find_stencils, put_weights, scatter = (
         make_find_stencils(basis),
         make_put_weights(basis),
@@ -107,11 +105,12 @@ def make_points_to_grid(basis: Basis, precision: str) -> Callable[..., Any]:
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{basis.name}_{precision}_{CORE_MARK}")
     def points_to_grid(  # type: ignore[no-untyped-def]
-        storage, point_mass, stripe_starts, shares, nodes, nodes_y, ghosts, origin, cell_size
+        storage, point_mass, stripe_starts, threads, nodes, nodes_y, ghosts, origin, cell_size
     ):
         rows, inverse_size = rows_of(storage, OF_EVERY_LAW), 1.0 / cell_size
-        for shares_of_parity in shares:
-            for share in prange(len(shares_of_parity) - 1):
+        for parity in range(2):
+            shares = shares_of((len(stripe_starts) - parity) // 2, threads)
+            for thread in prange(threads_of(shares)):
                 steps = np.empty((2, GROUP * LANES), number)
                 bringing = Bringing(
                     np.empty(GROUP),
@@ -120,9 +119,11 @@ def make_points_to_grid(basis: Basis, precision: str) -> Callable[..., Any]:
                     steps[0],
                     steps[1],
                 )
-                for stripe in range(shares_of_parity[share], shares_of_parity[share + 1], 2):
-                    for start in range(stripe_starts[stripe], stripe_starts[stripe + 1], GROUP):
-                        first, last = np.uint64(start), np.uint64(min(start + GROUP, stripe_starts[stripe + 1]))
+                part = next_part(shares, thread)
+                while part >= 0:
+                    begin, end = stripe_starts[2 * part + parity], stripe_starts[2 * part + parity + 1]
+                    for start in range(begin, end, GROUP):
+                        first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
                         for p in range(first, last, LANES):
                             k = p - first
                             first_node, along_x, along_y = find_stencils(rows, p, nodes_y, ghosts, origin, inverse_size)
@@ -130,5 +131,6 @@ def make_points_to_grid(basis: Basis, precision: str) -> Callable[..., Any]:
                             put_weights(bringing.weights, k, along_x, along_y)
                             put_amounts(rows, p, k, point_mass, cell_size, along_x, along_y, bringing)
                         scatter(last - first, nodes, nodes_y, bringing)
+                    part = next_part(shares, thread)
 
     return points_to_grid

@@ -144,7 +144,7 @@ class Simulation:
         self._sort_if_drifted()
         self._clear_nodes()
         for body in self.bodies:
-            body.to_grid(grid)
+            body.to_grid(grid, self.threads)
             if self.body_force is not None:
                 scatter_body_force(body, self.body_force(body, self.time), grid, self.basis)
         for axis in self.periodic_axes:
@@ -157,9 +157,9 @@ class Simulation:
         if self.sleep is not None:
             self.sleep.hold(self.reach)
         for body in self.bodies:
-            body.from_grid(grid, dt, self._memory(dt), ties=tied > 0.0)
+            body.from_grid(grid, dt, self._memory(dt), self.threads, ties=tied > 0.0)
         for body in self.bodies:
-            body.update_stress(dt, tied, tied / self.scene.transfer.time_constant)
+            body.update_stress(dt, tied, tied / self.scene.transfer.time_constant, self.threads)
         self.time += dt
         self.last_step = dt
         self.steps += 1
@@ -214,7 +214,7 @@ class Simulation:
         for body in self.bodies:
             for axis in self.periodic_axes:
                 body.wrap(axis, self.grid.lower[axis], self.grid.upper[axis] - self.grid.lower[axis])
-            body.sort(self.grid, self.basis, self.threads)
+            body.sort(self.grid, self.basis)
         self.drift = 0.0
         self.find_reach()
 

@@ -112,21 +112,3 @@ def _reorder(storage, first, order):  # type: ignore[no-untyped-def]
             # unsigned, so that nothing is done for numbers that count from the end
             found[p] = row[np.uint64(order[p])]
         row[:] = found
-
-
-def balanced_shares(stripe_starts: NDArray[np.int64], threads: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The stripes of even number, and those of odd number, in `threads` runs of about the same number of points each.
-
-    Of each run the number of its first stripe; at the end what the next one would be.
-    """
-    counts = np.diff(stripe_starts)
-    return _shares(counts, 0, threads), _shares(counts, 1, threads)
-
-
-def _shares(counts: NDArray[np.int64], parity: int, threads: int) -> NDArray[np.int64]:
-    held = np.concatenate([[0], np.cumsum(counts[parity::2])])
-    targets = np.linspace(0, held[-1], threads + 1)
-    boundaries = np.abs(held[:, np.newaxis] - targets).argmin(axis=0)
-    boundaries[-1] = len(held) - 1
-    shares: NDArray[np.int64] = 2 * boundaries + parity
-    return shares

@@ -32,6 +32,7 @@ from mpm_core.columns import (
     SZZ,
 )
 from mpm_core.law_at_points import make_apply_law, make_find_stiffness, make_largest_signal_speed, ordered_bits
+from mpm_core.parts import next_part, shares_of, threads_of
 from mpm_core.quads import LANES, filled, first_lanes, quad_at, total
 from mpm_core.rows import rows_of
 from mpm_core.sources import CORE_MARK
@@ -165,27 +166,30 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(mark)
     def stress_pass(  # type: ignore[no-untyped-def]
-        storage, count, point_mass, parameters, dt, tied, exchange, reports
+        storage, count, point_mass, parameters, dt, tied, exchange, threads, reports
     ):
-        rows = rows_of(storage, all_rows)
-        for block in prange(reports.shape[0]):
+        rows, shares = rows_of(storage, all_rows), shares_of(reports.shape[0], threads)
+        for thread in prange(threads_of(shares)):
             arrays = np.zeros((3, GROUP))
             ties, stiffness, room = arrays[0], arrays[1], (arrays[1], arrays[2])
-            fastest, largest, work = np.int64(0), np.int64(0), 0.0
-            begin, end = points_of_block(block, reports.shape[0], count)
-            for start in range(begin, end, GROUP):
-                first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
-                if tied > 0.0:
-                    find_stiffness(rows, first, last, parameters, stiffness)
-                    tie_volumes(rows, first, last, tied, exchange, stiffness, ties)
-                accumulate_shear_strain(rows, first, last, dt)
-                increment = bring_forward(rows, first, last, dt, ties, room)
-                apply_law(rows, first, last, ties, parameters, dt)
-                speed = largest_signal_speed(rows, first, last, parameters)
-                work += work_done(rows, first, last, room)
-                fastest, largest = max(fastest, speed), max(largest, increment)
-            reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
-            reports[block, INTERNAL_WORK] = point_mass * dt * work
-            reports[block, MAX_INCREMENT] = np.int64(largest).view(np.float64)
+            block = next_part(shares, thread)
+            while block >= 0:
+                fastest, largest, work = np.int64(0), np.int64(0), 0.0
+                begin, end = points_of_block(block, reports.shape[0], count)
+                for start in range(begin, end, GROUP):
+                    first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
+                    if tied > 0.0:
+                        find_stiffness(rows, first, last, parameters, stiffness)
+                        tie_volumes(rows, first, last, tied, exchange, stiffness, ties)
+                    accumulate_shear_strain(rows, first, last, dt)
+                    increment = bring_forward(rows, first, last, dt, ties, room)
+                    apply_law(rows, first, last, ties, parameters, dt)
+                    speed = largest_signal_speed(rows, first, last, parameters)
+                    work += work_done(rows, first, last, room)
+                    fastest, largest = max(fastest, speed), max(largest, increment)
+                reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
+                reports[block, INTERNAL_WORK] = point_mass * dt * work
+                reports[block, MAX_INCREMENT] = np.int64(largest).view(np.float64)
+                block = next_part(shares, thread)
 
     return stress_pass

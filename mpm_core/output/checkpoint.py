@@ -81,7 +81,6 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
         body.points[:] = group["points"][:]
         body.ids = group["ids"][:]
         body.stripe_starts = group["stripe_starts"][:]
-        body.share_between(simulation.threads)
         body.set_awake(int(group.attrs["awake"]))
         body.signal_speed_asleep = float(group.attrs["signal_speed_asleep"])
     if simulation.sleep is not None:

@@ -1,0 +1,56 @@
+"""How threads share the parts of a pass: each begins with a share of its own, and who has finished helps the others.
+
+A thread whose core is slower, or whose points take longer, then keeps nobody waiting. Parts do not depend on one
+another, and what comes of them does not depend on who does them.
+"""
+
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba.core import types
+from numba.extending import intrinsic, register_jitable
+
+# Of the work of a thread: the next part, and the one behind its last. The rest of the row keeps those of two threads
+# out of one cache line.
+NEXT, END = 0, 1
+ROOM = 16
+
+
+@intrinsic
+def _taken(typing_context: Any, array: Any, position: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        numbers = context.make_array(signature.args[0])(context, builder, arguments[0])
+        pointer = builder.gep(numbers.data, [arguments[1]])
+        return builder.atomic_rmw("add", pointer, ir.Constant(ir.IntType(64), 1), "seq_cst")
+
+    return types.int64(array, types.intp), generate
+
+
+@register_jitable
+def shares_of(parts, threads):  # type: ignore[no-untyped-def]
+    """The parts from zero on, shared between threads."""
+    shares = np.zeros(threads * ROOM, np.int64)
+    for thread in range(threads):
+        shares[thread * ROOM + NEXT] = parts * thread // threads
+        shares[thread * ROOM + END] = parts * (thread + 1) // threads
+    return shares
+
+
+@register_jitable
+def threads_of(shares):  # type: ignore[no-untyped-def]
+    """How many threads there are shares for."""
+    return len(shares) // ROOM
+
+
+@register_jitable
+def next_part(shares, thread):  # type: ignore[no-untyped-def]
+    """The next part for a thread: of its own share, else of another's; -1 where nothing is left."""
+    threads = threads_of(shares)
+    for turn in range(threads):
+        share = (thread + turn) % threads * ROOM
+        if shares[share + NEXT] < shares[share + END]:
+            part = _taken(shares, share + NEXT)  # type: ignore[call-arg]
+            if part < shares[share + END]:
+                return part
+    return -1
