@@ -161,9 +161,7 @@ class Body:
         # A single stripe, to one thread: nobody waits for it.
         self._scatter(np.array([self.awake, self.count]), 1, nodes, grid)
 
-    def _scatter(
-        self, stripe_starts: NDArray[np.int64], threads: int, nodes: NDArray[np.float64], grid: Grid
-    ) -> None:
+    def _scatter(self, stripe_starts: NDArray[np.int64], threads: int, nodes: NDArray[np.float64], grid: Grid) -> None:
         self._points_to_grid(
             self.storage,
             self.point_mass,

@@ -1,15 +1,12 @@
 """How many threads a run may use."""
 
 import os
-
-# Idle threads of OpenMP spin by default, which on a busy machine takes the time of those that work, so that two runs
-# with two threads each on two cores take seven times as long. Spin for about as long as a step has no work for them,
-# then sleep. It has to be set before the first parallel kernel loads the library.
-os.environ.setdefault("GOMP_SPINCOUNT", "2000")
+from functools import cache
 
 import numba
 
 from materials import InputError
+from mpm_core.spinning import turns_awake
 
 # TBB, which numba prefers, waits at the end of a process for its threads by spinning: for minutes on a busy machine.
 numba.config.THREADING_LAYER_PRIORITY = ["omp", "tbb", "workqueue"]  # type: ignore[attr-defined]
@@ -36,4 +33,15 @@ def usable_threads(requested: int | None) -> int:
 
 def use_threads(count: int) -> None:
     """Let parallel kernels run on `count` threads."""
+    _limit_spinning()
     numba.set_num_threads(count)
+
+
+@cache
+def _limit_spinning() -> None:
+    """Let idle threads sleep after a while.
+
+    By default OpenMP's spin, which on a busy machine takes the time of those that work: two runs with two threads each
+    on two cores take seven times as long. It has to be set before the library is loaded.
+    """
+    os.environ.setdefault("GOMP_SPINCOUNT", str(turns_awake()))

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import materials
+from mpm_core.sources import KERNEL_FILES
 
 ROOT = Path(__file__).resolve().parent.parent
 ALLOWED = {
@@ -54,6 +55,14 @@ def test_laws_use_public_names_of_materials_only(path):
     used = [(module, name) for module, name in imports(path) if module.partition(".")[0] == "materials"]
     assert [module for module, _ in used if module != "materials"] == []
     assert [name for _, name in used if name not in materials.__all__] == []
+
+
+def test_the_mark_of_compiled_code_covers_what_kernels_are_made_from():
+    makers = ("@njit", "@register_jitable", "@intrinsic")
+    found = {
+        path.stem for path in modules("mpm_core") if any(maker in path.read_text(encoding="utf-8") for maker in makers)
+    }
+    assert found - {"spinning"} <= set(KERNEL_FILES)
 
 
 def test_public_names_exist_once():
