@@ -10,6 +10,7 @@ from numba.extending import register_jitable
 from materials.compilation import PointwiseLaw, named
 from materials.tensor import SymmetricTensor, added, isotropic
 from mpm_core.columns import DENSITY, FIRST_STATE, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ, VX, VY
+from mpm_core.side_by_side import side_by_side
 
 
 @register_jitable
@@ -94,23 +95,40 @@ def make_apply_law(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
     return apply_law
 
 
+@register_jitable(forceinline=True)
+def _stress_at(rows, p):  # type: ignore[no-untyped-def]
+    return SymmetricTensor(rows[SXX][p], rows[SYY][p], rows[SZZ][p], rows[SXY][p], 0.0, 0.0)
+
+
+@register_jitable(forceinline=True)
+def _put_stress(rows, p, stress):  # type: ignore[no-untyped-def]
+    rows[SXX][p], rows[SYY][p], rows[SZZ][p], rows[SXY][p] = stress.xx, stress.yy, stress.zz, stress.xy
+
+
+@register_jitable(forceinline=True)
+def _strain_rate_at(rows, p, tie, dt):  # type: ignore[no-untyped-def]
+    """That of the motion, less a compressive strain [1] over the step."""
+    shear = 0.5 * (rows[LXY][p] + rows[LYX][p])
+    motion = SymmetricTensor(rows[LXX][p], rows[LYY][p], 0.0, shear, 0.0, 0.0)
+    return added(motion, isotropic(tie * (-1.0 / (3.0 * dt))))
+
+
 def _make_update(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
     law_update, parameter_class = law.update, law.parameters
     load, store = make_state_access(law.state, mark)
 
+    @register_jitable(forceinline=True)
+    @named(mark)
+    def update_one(p, rows, first, ties, law_parameters, dt):  # type: ignore[no-untyped-def]
+        stress, strain_rate = _stress_at(rows, p), _strain_rate_at(rows, p, ties[p - first], dt)
+        stress, state = law_update(stress, strain_rate, rows[DENSITY][p], load(rows, p), law_parameters, dt)
+        _put_stress(rows, p, stress)
+        store(rows, p, state)
+
     @register_jitable
     @named(mark)
     def update(rows, first, last, ties, parameters, dt):  # type: ignore[no-untyped-def]
-        lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-        sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
-        law_parameters = parameter_class(*parameters)
-        for p in range(first, last):
-            motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-            strain_rate = added(motion, isotropic(ties[p - first] * (-1.0 / (3.0 * dt))))
-            stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
-            stress, state = law_update(stress, strain_rate, density[p], load(rows, p), law_parameters, dt)
-            sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
-            store(rows, p, state)
+        side_by_side(first, last, update_one, (rows, first, ties, parameter_class(*parameters), dt))
 
     return update
 
@@ -120,21 +138,21 @@ def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: s
     parameter_class = law.parameters
     load, store = make_state_access(law.state, mark)
 
+    @register_jitable(forceinline=True)
+    @named(mark)
+    def take_one(p, rows, first, ties, law_parameters, dt, pending):  # type: ignore[no-untyped-def]
+        stress, strain_rate = _stress_at(rows, p), _strain_rate_at(rows, p, ties[p - first], dt)
+        state, density = load(rows, p), rows[DENSITY][p]
+        stress, state, succeeded = small_step(stress, strain_rate, density, state, law_parameters, dt)
+        pending[p - first] = not succeeded
+        if succeeded:
+            _put_stress(rows, p, stress)
+            store(rows, p, state)
+
     @register_jitable
     @named(mark)
     def take_small_steps(rows, first, last, ties, parameters, dt, pending):  # type: ignore[no-untyped-def]
-        lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-        sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
-        law_parameters = parameter_class(*parameters)
-        for p in range(first, last):
-            motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-            strain_rate = added(motion, isotropic(ties[p - first] * (-1.0 / (3.0 * dt))))
-            stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
-            stress, state, succeeded = small_step(stress, strain_rate, density[p], load(rows, p), law_parameters, dt)
-            pending[p - first] = not succeeded
-            if succeeded:
-                sxx[p], syy[p], szz[p], sxy[p] = stress.xx, stress.yy, stress.zz, stress.xy
-                store(rows, p, state)
+        side_by_side(first, last, take_one, (rows, first, ties, parameter_class(*parameters), dt, pending))
 
     return take_small_steps
 

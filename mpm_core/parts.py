@@ -50,7 +50,7 @@ def next_part(shares, thread):  # type: ignore[no-untyped-def]
     for turn in range(threads):
         share = (thread + turn) % threads * ROOM
         if shares[share + NEXT] < shares[share + END]:
-            part = _taken(shares, share + NEXT)  # type: ignore[call-arg]
+            part = _taken(shares, share + NEXT)  # type: ignore[call-arg, var-annotated]
             if part < shares[share + END]:
                 return part
     return -1

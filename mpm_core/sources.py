@@ -26,6 +26,7 @@ KERNEL_FILES = (
     "reports",
     "rows",
     "scatter",
+    "side_by_side",
     "sleeping",
     "sorting",
     "stencils",

@@ -1,0 +1,51 @@
+"""A loop over points of which the compiler takes several at a time, more than it would think worth while.
+
+What a law does at a point mostly waits for its own last operation, a root or a division, while points do not wait for
+one another. That several fit into a register the compiler sees; that it pays to have several registers under way it
+does not see, as the loop is long. It is told so for this loop, in what LLVM keeps about it.
+"""
+
+from typing import Any
+
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.extending import intrinsic
+
+# Points in a register, or in two where registers are shorter, and how many of these are under way.
+OPTIONS = (("llvm.loop.vectorize.width", 8), ("llvm.loop.interleave.count", 2))
+
+
+@intrinsic
+def side_by_side(typing_context: Any, first: Any, last: Any, work: Any, arguments: Any) -> Any:
+    """Call work(p, *arguments) for each point from the first to the one before the last; none depends on another."""
+    call = work.get_call_type(typing_context, (first, *arguments.types), {})
+
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        begin, end, _, packed = values
+        function = context.get_function(work, call)
+        context.add_linking_libs(getattr(function, "libs", ()))
+        before, loop, after = builder.block, *map(builder.append_basic_block, ("points", "behind_points"))
+        builder.cbranch(builder.icmp_unsigned("<", begin, end), loop, after)
+        builder.position_at_end(loop)
+        point = builder.phi(begin.type)
+        function(builder, (point, *cgutils.unpack_tuple(builder, packed)))
+        following = builder.add(point, ir.Constant(begin.type, 1), flags=["nuw"])
+        point.add_incoming(begin, before)
+        point.add_incoming(following, builder.block)
+        again = builder.cbranch(builder.icmp_unsigned("<", following, end), loop, after)
+        again.set_metadata("llvm.loop", _told(builder.module))
+        builder.position_at_end(after)
+        return context.get_dummy_value()
+
+    return types.void(first, first, work, arguments), generate
+
+
+def _told(module: Any) -> Any:
+    """A node with the options of a loop; it has to begin with itself."""
+    options = [
+        module.add_metadata([ir.MetaDataString(module, name), ir.Constant(ir.IntType(32), value)])
+        for name, value in OPTIONS
+    ]
+    node = ir.values.MDValue(module, [], name=str(len(module.metadata)))
+    node.operands = (node, *options)
+    return node
