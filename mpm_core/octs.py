@@ -1,6 +1,6 @@
-"""Eight singles side by side in a vector register, for compiled code: all components of a node in single precision.
+"""Eight numbers side by side in a vector register, for compiled code: all components of a node.
 
-The counterpart of the two `quads` that a node fills in double precision.
+Doubles or singles, as the array holds them. Where registers are shorter than that, the compiler takes two.
 """
 
 from typing import Any
@@ -16,24 +16,27 @@ from mpm_core.quads import place
 LANES = 8
 HALF = LANES // 2
 
-_VECTOR = ir.VectorType(ir.FloatType(), LANES)
 _INDEX = ir.IntType(32)
+# Of each kind of number: what the compiler calls it.
+_SCALARS = {types.float64: (ir.DoubleType(), "f64"), types.float32: (ir.FloatType(), "f32")}
 
 
 class OctType(types.Type):
-    """The compiler's type of eight singles in a register."""
+    """The compiler's type of eight numbers of a kind in a register."""
 
-    def __init__(self) -> None:
-        super().__init__(name="Oct")
-
-
-OCT = OctType()
+    def __init__(self, number: Any) -> None:
+        self.number = number
+        super().__init__(name=f"Oct({number})")
 
 
 @register_model(OctType)
 class _OctModel(PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, _VECTOR)
+        super().__init__(manager, kind, ir.VectorType(_SCALARS[kind.number][0], LANES))
+
+
+def _lanes(numbers: list[int]) -> Any:
+    return ir.Constant(ir.VectorType(_INDEX, LANES), numbers)
 
 
 @intrinsic
@@ -42,7 +45,7 @@ def _oct_at(typing_context: Any, array: Any, position: Any) -> Any:
         pointer, alignment = place(context, builder, signature.args[0], arguments, LANES)
         return builder.load(pointer, align=alignment)
 
-    return OCT(array, position), generate
+    return OctType(array.dtype)(array, position), generate
 
 
 @intrinsic
@@ -50,10 +53,10 @@ def _half_oct_at(typing_context: Any, array: Any, position: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         pointer, alignment = place(context, builder, signature.args[0], arguments, HALF)
         half = builder.load(pointer, align=alignment)
-        zeros = ir.Constant(half.type, [0.0] * HALF)
-        return builder.shuffle_vector(half, zeros, ir.Constant(ir.VectorType(_INDEX, LANES), list(range(LANES))))
+        nothing = ir.Constant(half.type, [-0.0] * HALF)
+        return builder.shuffle_vector(half, nothing, _lanes(list(range(LANES))))
 
-    return OCT(array, position), generate
+    return OctType(array.dtype)(array, position), generate
 
 
 @intrinsic
@@ -63,7 +66,7 @@ def _put_oct(typing_context: Any, array: Any, position: Any, oct_: Any) -> Any:
         builder.store(arguments[2], pointer, align=alignment)
         return context.get_dummy_value()
 
-    return types.void(array, position, OCT), generate
+    return types.void(array, position, oct_), generate
 
 
 @intrinsic
@@ -71,19 +74,20 @@ def _oct_sum(typing_context: Any, a: Any, b: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.fadd(arguments[0], arguments[1])
 
-    return OCT(OCT, OCT), generate
+    return a(a, a), generate
 
 
 @intrinsic
 def _scaled_oct_sum(typing_context: Any, factor: Any, a: Any, b: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        undefined = ir.Constant(_VECTOR, ir.Undefined)
+        vector, name = arguments[1].type, _SCALARS[a.number][1]
+        undefined = ir.Constant(vector, ir.Undefined)
         first = builder.insert_element(undefined, arguments[0], ir.Constant(_INDEX, 0))
-        factors = builder.shuffle_vector(first, undefined, ir.Constant(ir.VectorType(_INDEX, LANES), [0] * LANES))
-        fma = get_or_insert_function(builder.module, ir.FunctionType(_VECTOR, [_VECTOR] * 3), f"llvm.fma.v{LANES}f32")
+        factors = builder.shuffle_vector(first, undefined, _lanes([0] * LANES))
+        fma = get_or_insert_function(builder.module, ir.FunctionType(vector, [vector] * 3), f"llvm.fma.v{LANES}{name}")
         return builder.call(fma, [factors, arguments[1], arguments[2]])
 
-    return OCT(types.float32, OCT, OCT), generate
+    return a(a.number, a, a), generate
 
 
 # As in `quads`, closures hold what hands on, not the intrinsics.
@@ -91,19 +95,19 @@ def _scaled_oct_sum(typing_context: Any, factor: Any, a: Any, b: Any) -> Any:
 
 @register_jitable(forceinline=True)
 def oct_at(array: Any, position: Any) -> Any:
-    """The eight singles from a position on."""
+    """The eight numbers from a position on."""
     return _oct_at(array, position)  # type: ignore[call-arg]
 
 
 @register_jitable(forceinline=True)
 def half_oct_at(array: Any, position: Any) -> Any:
-    """The four singles from a position on, and four zeros."""
+    """The four numbers from a position on, and four times -0, which added to anything leaves it as it is."""
     return _half_oct_at(array, position)  # type: ignore[call-arg]
 
 
 @register_jitable(forceinline=True)
 def put_oct(array: Any, position: Any, oct_: Any) -> None:
-    """Store eight singles from a position on."""
+    """Store eight numbers from a position on."""
     _put_oct(array, position, oct_)  # type: ignore[call-arg]
 
 

@@ -95,11 +95,7 @@ def make_put_weights(basis: Basis) -> Callable[..., Any]:
 @cache
 def make_points_to_grid(basis: Basis, precision: str) -> Callable[..., Any]:
     """Scatter mass, volume, pressure, momentum and internal force to the grid."""
-    find_stencils, put_weights, scatter = (
-        make_find_stencils(basis),
-        make_put_weights(basis),
-        make_scatter(basis, precision),
-    )
+    find_stencils, put_weights, scatter = make_find_stencils(basis), make_put_weights(basis), make_scatter(basis)
     nodes_of_stencil, number = basis.width**2, PRECISIONS[precision]
 
     @njit(parallel=True, error_model="numpy", cache=True)
