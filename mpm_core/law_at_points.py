@@ -128,7 +128,7 @@ def _make_update(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
     @register_jitable
     @named(mark)
     def update(rows, first, last, ties, parameters, dt):  # type: ignore[no-untyped-def]
-        side_by_side(first, last, update_one, (rows, first, ties, parameter_class(*parameters), dt))  # type: ignore[call-arg]
+        side_by_side(first, last, update_one, (rows, first, ties, parameter_class(*parameters), dt))
 
     return update
 
@@ -152,7 +152,7 @@ def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: s
     @register_jitable
     @named(mark)
     def take_small_steps(rows, first, last, ties, parameters, dt, pending):  # type: ignore[no-untyped-def]
-        side_by_side(first, last, take_one, (rows, first, ties, parameter_class(*parameters), dt, pending))  # type: ignore[call-arg]
+        side_by_side(first, last, take_one, (rows, first, ties, parameter_class(*parameters), dt, pending))
 
     return take_small_steps
 

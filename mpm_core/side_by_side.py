@@ -9,15 +9,14 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.extending import intrinsic
+from numba.extending import intrinsic, register_jitable
 
 # Points in a register, or in two where registers are shorter, and how many of these are under way.
 OPTIONS = (("llvm.loop.vectorize.width", 8), ("llvm.loop.interleave.count", 2))
 
 
 @intrinsic
-def side_by_side(typing_context: Any, first: Any, last: Any, work: Any, arguments: Any) -> Any:
-    """Call work(p, *arguments) for each point from the first to the one before the last; none depends on another."""
+def _side_by_side(typing_context: Any, first: Any, last: Any, work: Any, arguments: Any) -> Any:
     call = work.get_call_type(typing_context, (first, *arguments.types), {})
 
     def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -49,3 +48,12 @@ def _told(module: Any) -> Any:
     node = ir.values.MDValue(module, [], name=str(len(module.metadata)))
     node.operands = (node, *options)
     return node
+
+
+# As in `quads`, closures hold what hands on, not the intrinsic.
+
+
+@register_jitable(forceinline=True)
+def side_by_side(first: Any, last: Any, work: Any, arguments: Any) -> None:
+    """Call work(p, *arguments) for each point from the first to the one before the last; none depends on another."""
+    _side_by_side(first, last, work, arguments)  # type: ignore[call-arg]

@@ -8,7 +8,7 @@ import pytest
 from mpm_core.basis import BASES
 from mpm_core.blocks import EQUAL_SHARES
 from mpm_core.columns import FIRST_STATE, X, Y
-from mpm_core.sorting import balanced_shares, sort_by_stencil
+from mpm_core.sorting import sort_by_stencil
 
 CELL = 0.1
 # Heights [cells] of a pile over the column of cells, of some number of columns.
@@ -57,6 +57,6 @@ def test_two_threads_have_equal_shares_of_each_parity(pile):
     _, starts = stripes_of(heights, BASES["quadratic"])
     counts, tallest = np.diff(starts), 4 * heights.max()
     assert len(counts) % EQUAL_SHARES == 0
-    for shares in balanced_shares(starts, 2):
-        first, second = (counts[a:b:2].sum() for a, b in pairwise(shares))
+    for parity in (0, 1):
+        first, second = (half.sum() for half in np.split(counts[parity::2], 2))
         assert abs(int(first) - int(second)) <= tallest

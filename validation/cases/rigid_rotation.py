@@ -70,10 +70,10 @@ def _withhold_spin(body: Body) -> None:
     """Show the stress pass the symmetric part of the velocity gradient only."""
     update = body.update_stress
 
-    def without_spin(dt: float, tied: float = 0.0, exchange: float = 0.0) -> None:
+    def without_spin(dt: float, tied: float = 0.0, exchange: float = 0.0, threads: int = 1) -> None:
         gradient = body.points[[LXY, LYX]]
         body.points[[LXY, LYX]] = gradient.mean(axis=0)
-        update(dt, tied, exchange)
+        update(dt, tied, exchange, threads)
         body.points[[LXY, LYX]] = gradient
 
     body.update_stress = without_spin  # type: ignore[method-assign]
