@@ -10,6 +10,7 @@ from materials.elastic_energy import (
 )
 from materials.errors import InputError, SimulationError
 from materials.flowing_cam_clay import FlowingCamClay, growth_of_surface
+from materials.flowing_cam_clay_small_step import SmallFlowingStep, flowing_cam_clay_small_step
 from materials.flowing_cam_clay_step import FlowingStep, flowing_cam_clay_step
 from materials.gap import Contact, after_closing
 from materials.law import HOOK_VERSION, Law, ParameterSet
@@ -56,6 +57,7 @@ __all__ = [
     "Parameter",
     "ParameterSet",
     "SimulationError",
+    "SmallFlowingStep",
     "SmallStep",
     "StateVariable",
     "SymmetricTensor",
@@ -75,6 +77,7 @@ __all__ = [
     "energy_of_logarithmic_compression",
     "energy_of_shear",
     "equivalent_shear_stress",
+    "flowing_cam_clay_small_step",
     "flowing_cam_clay_step",
     "flowing_wave_speed",
     "friction_of_inertial_number",

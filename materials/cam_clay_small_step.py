@@ -73,6 +73,36 @@ def cam_clay_small_step(
     constants: CamClay,
 ) -> SmallStep:
     """One strain increment in contact, elastic or returned to F = 0, if it is small enough for that."""
+    trial, sheared = trial_of(start_pressure, start_deviator, compression, shear, preconsolidation_pressure, constants)
+    elastic = evaluated(0.0, 0.0, trial, constants)
+    first = improved(elastic, trial, constants)
+    second = improved(first, trial, constants)
+    last = improved(improved(second, trial, constants), trial, constants)
+
+    yields = elastic.of_yield > 0.0
+    relaxation = last.relaxation if yields else 0.0
+    end_shrunk = last.shrunk if yields else trial.shrunk
+    mean = last.mean if yields else elastic.mean
+    ratio = last.ratio if yields else trial.ratio
+    p = start_pressure / end_shrunk
+    s = scaled(added(start_deviator, scaled(sheared, p * mean)), 1.0 / (1.0 + relaxation))
+    error = max(abs(last.of_yield) - TOLERANCE * last.ratio, abs(last.of_flow) - STRAIN_TOLERANCE)
+    exponent = max(abs(last.growth), abs(last.plastic_compression) * total_slope(constants))
+    is_root = error <= 0.0 and exponent <= LARGEST_EXPONENT and last.relaxation >= 0.0
+    succeeded = abs(trial.growth) <= LARGEST_EXPONENT and (is_root or not yields)
+    return SmallStep(p, ratio * p, s, succeeded)
+
+
+@pointwise
+def trial_of(
+    start_pressure: float,
+    start_deviator: SymmetricTensor,
+    compression: float,
+    shear: SymmetricTensor,
+    preconsolidation_pressure: float,
+    constants: CamClay,
+) -> tuple[TrialInvariants, SymmetricTensor]:
+    """The elastic trial state, and the strain by which p m moves the deviator, 2 g/kappa times the shear."""
     m_squared = constants.critical_state_ratio * constants.critical_state_ratio
     stiffness = shear_modulus(inverse_swelling_index(constants), constants.poisson_ratio)
     inverse_pressure = 1.0 / start_pressure
@@ -88,23 +118,7 @@ def cam_clay_small_step(
         3.0 / m_squared * contraction(at_start, sheared),
         1.5 / m_squared * contraction(sheared, sheared),
     )
-    elastic = evaluated(0.0, 0.0, trial, constants)
-    first = improved(elastic, trial, constants)
-    second = improved(first, trial, constants)
-    last = improved(improved(second, trial, constants), trial, constants)
-
-    yields = elastic.of_yield > 0.0
-    relaxation = last.relaxation if yields else 0.0
-    end_shrunk = last.shrunk if yields else shrunk
-    mean = last.mean if yields else elastic.mean
-    ratio = last.ratio if yields else trial.ratio
-    p = start_pressure / end_shrunk
-    s = scaled(added(start_deviator, scaled(sheared, p * mean)), 1.0 / (1.0 + relaxation))
-    error = max(abs(last.of_yield) - TOLERANCE * last.ratio, abs(last.of_flow) - STRAIN_TOLERANCE)
-    exponent = max(abs(last.growth), abs(last.plastic_compression) * total_slope(constants))
-    is_root = error <= 0.0 and exponent <= LARGEST_EXPONENT and last.relaxation >= 0.0
-    succeeded = abs(growth) <= LARGEST_EXPONENT and (is_root or not yields)
-    return SmallStep(p, ratio * p, s, succeeded)
+    return trial, sheared
 
 
 @pointwise

@@ -58,6 +58,12 @@ def growth_of_surface(number: float, constants: FlowingCamClay) -> float:
 
 
 @pointwise
+def growth_per_number(constants: FlowingCamClay) -> float:
+    """The slope of ln(p_c/p_c0) with I, the same for all points."""
+    return 1.0 / (constants.dilation_inertial_number * plastic_index_of(constants))
+
+
+@pointwise
 def sensitive_inertial_number(constants: FlowingCamClay) -> float:
     """The inertial number over which the surface changes by about its own size."""
     return min(constants.dilation_inertial_number * plastic_index_of(constants), constants.friction_inertial_number)

@@ -18,6 +18,7 @@ from materials.cam_clay import CamClay, CamClayStep, cam_clay_step
 from materials.flowing_cam_clay import (
     FlowingCamClay,
     growth_of_surface,
+    growth_per_number,
     plastic_index_of,
     sensitive_inertial_number,
     slope_of_stress_ratio,
@@ -187,7 +188,7 @@ def onset_of_flow(elastic: CamClayStep, lower: float, increment: Increment, cons
     """
     p, s = elastic.mean_pressure, elastic.deviator
     q_squared = 1.5 * contraction(s, s)
-    per_number = 1.0 / (constants.dilation_inertial_number * plastic_index_of(constants))
+    per_number = growth_per_number(constants)
     number = lower
     for _ in range(MAXIMUM_ITERATIONS):
         m = steady_stress_ratio(number, constants)

@@ -20,7 +20,8 @@ A change of the shear rate moves the surface at once, p_c0 only as volume change
 Dissipation is (p (2p - p_c) + 2 q^2/M^2) dLambda = p p_c dLambda >= 0.
 
 A step. I is the plastic inertial number of the step, with p at its end, found together with the return to (1) between
-brackets (`materials/flowing_cam_clay_step.py`); (2) and (7) are in `materials/flowing_cam_clay.py`.
+brackets (`materials/flowing_cam_clay_step.py`), for small steps by a fixed number of iterations
+(`materials/flowing_cam_clay_small_step.py`); (2) and (7) are in `materials/flowing_cam_clay.py`.
 
 Grains carry no tension: opened points keep a gap, as in `modified_cam_clay`.
 
@@ -46,6 +47,7 @@ from materials import (
     deviator,
     deviatoric_stress,
     energy_of_cam_clay,
+    flowing_cam_clay_small_step,
     flowing_cam_clay_step,
     growth_of_surface,
     hookimpl,
@@ -138,6 +140,36 @@ def update(
     return assembled_stress(step.mean_pressure, step.deviator), State(size_at_rest, 0.0, step.inertial_number)
 
 
+def small_step(
+    stress: SymmetricTensor,
+    strain_rate: SymmetricTensor,
+    density: float,
+    state: State,
+    parameters: Parameters,
+    dt: float,
+) -> tuple[SymmetricTensor, State, bool]:
+    """The same for a small step of a point that is in contact and stays so."""
+    smallest = parameters.stress_free_pressure
+    start_pressure = pressure(stress)
+    new = flowing_cam_clay_small_step(
+        max(start_pressure, smallest),
+        deviator(stress),
+        volumetric_strain_rate(strain_rate) * dt,
+        scaled(deviator(strain_rate), dt),
+        state.preconsolidation_pressure,
+        state.inertial_number,
+        dt,
+        constants_of(parameters),
+    )
+    in_contact = min(start_pressure, new.mean_pressure, 0.5 * new.ratio * new.mean_pressure) >= smallest
+    succeeded = new.succeeded and in_contact and state.gap == 0.0
+    return (
+        assembled_stress(new.mean_pressure, new.deviator),
+        State(new.size_at_rest, 0.0, new.inertial_number),
+        succeeded,
+    )
+
+
 @pointwise
 def constants_of(parameters: Parameters) -> FlowingCamClay:
     """The constants of the return map."""
@@ -221,6 +253,7 @@ LAW = Law(
     stored_energy=stored_energy,
     at_bound=at_bound,
     contradiction=contradiction,
+    small_step=small_step,
     parameter_sets={
         "paper": ParameterSet(PAPER, f"{SOURCE}; OCR = 1", density_on_compression_line),
         "paper_ocr4": ParameterSet(
