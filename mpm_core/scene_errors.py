@@ -1,5 +1,6 @@
 """Validation errors of a scene in one line: key, value, what is allowed, the nearest valid name."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -27,10 +28,22 @@ def _sentence(problem: Any, key: str, model: type[BaseModel]) -> str:
         return f"unknown key '{key}'; {nearest_name(name, _keys(model, parents))}"
     if kind == "missing":
         return f"'{key}' is missing"
+    if kind == "union_tag_invalid":
+        tag = problem["ctx"]["discriminator"].strip("'")
+        return _not_among(f"{key}.{tag}", problem["ctx"]["tag"], problem["ctx"]["expected_tags"])
+    if kind == "literal_error" and isinstance(problem["input"], str):
+        return _not_among(key, problem["input"], problem["ctx"]["expected"])
     message = problem["msg"].removeprefix("Value error, ")
     if kind == "value_error":
         return f"{key}: {message}" if key else message
     return f"{key} = {problem['input']!r}: {message}"
+
+
+def _not_among(key: str, value: str, allowed: str) -> str:
+    """What is wrong with a text that is none of some quoted ones."""
+    close = nearest_name(value, re.findall("'([^']*)'", allowed))
+    hint = f"; {close}" if close.startswith("did") else ""
+    return f"{key} = {value!r}: allowed: {allowed}{hint}"
 
 
 def _union_tags(problem: Any, content: Mapping[str, Any]) -> set[str]:
