@@ -1,5 +1,6 @@
 """Finding laws: one pluggy hook for built-ins, installed packages and single files alike."""
 
+import hashlib
 import importlib.util
 import sys
 from dataclasses import dataclass
@@ -123,16 +124,26 @@ class Registry:
 
 
 def _import_file(path: Path) -> ModuleType:
+    """The module of a file; of a file with the same name and content that is loaded already, the same module.
+
+    It must be importable by name later: the compiler's disk cache refers to classes by module and name. Two files that
+    differ must not share a name, or what one leaves in the cache would refer to the classes of the other.
+    """
     if not path.is_file():
         raise FileNotFoundError(f"no file {path}")
-    # The module must be importable by name later: the compiler's disk cache refers to functions by module and name.
-    name = f"grainlaw_plugin_{path.stem}"
+    name = f"grainlaw_plugin_{path.stem}_{hashlib.sha256(path.read_bytes()).hexdigest()[:12]}"
+    if name in sys.modules:
+        return sys.modules[name]
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
         raise ImportError("not a Python file")
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
     return module
 
 

@@ -3,6 +3,7 @@
 The compiled code of two laws differs in what it closes over alone; loaded from the disk cache it was once mixed up.
 """
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -87,4 +88,32 @@ def test_a_copy_of_a_law_leaves_nothing_in_the_disk_cache_that_the_law_stumbles_
         path.write_text(get_material("newtonian").source_file.read_text())
         command = [sys.executable, "-c", script, path]
         printed.append(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    assert printed[0] == printed[1]
+
+
+def test_laws_from_two_files_of_the_same_name_leave_in_the_disk_cache_what_the_next_process_can_load(tmp_path):
+    script = (
+        "import sys; from pathlib import Path; from materials import SymmetricTensor, isotropic; "
+        "from materials.registry import Registry; "
+        "from materials.compilation import make_single_step, pointwise_law\n"
+        "for path in map(Path, sys.argv[1:]):\n"
+        "    found = Registry(); found.load_file(path); law = found.get('newtonian').law\n"
+        "    values = law.parameter_sets['glycerol'].parameters; stress = isotropic(-1.0)\n"
+        "    state = law.initial_state(stress, 1261.0, values)\n"
+        "    step = make_single_step(pointwise_law(law))\n"
+        "    end = step(stress, SymmetricTensor(1.0, *5 * (0.0,)), 1261.0, state, values, 1e-5)\n"
+        "print([tuple(v) for v in end])"
+    )
+    text = get_material("newtonian").source_file.read_text()
+    paths = [tmp_path / folder / "fluid.py" for folder in ("one", "other")]
+    for path in paths:
+        path.parent.mkdir()
+        path.write_text(f"{text}\n# {path.parent.name}\n")
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    printed = [
+        subprocess.run(
+            [sys.executable, "-c", script, *given], env=environment, check=True, capture_output=True, text=True
+        ).stdout
+        for given in (paths, paths[1:])
+    ]
     assert printed[0] == printed[1]
