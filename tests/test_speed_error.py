@@ -1,13 +1,16 @@
 """The page of speed against error: what errors are counted against, the front, and the square whose answer is known."""
 
+import json
 import math
 from dataclasses import replace
 
 import pytest
 
+from mpm_core.sources import CORE_MARK
 from validation.speed_error.exact import ExactSetting, cost_and_error
 from validation.speed_error.front import error, mean_observables, pareto_front
-from validation.speed_error.setting import Outcome, Setting
+from validation.speed_error.setting import Outcome, Setting, as_dict
+from validation.speed_error.store import made_with_other_kernels, outcomes
 
 OUTCOME = Outcome(points=1, steps=1, cpu_time=1.0, runout=1.0, height=0.5, center=0.2, mark="")
 
@@ -37,3 +40,13 @@ def test_the_square_costs_more_and_errs_less_on_finer_cells():
     assert fine is not None
     assert fine[1] < 0.4 * coarse[1]
     assert fine[0] > 0.0
+
+
+def test_outcomes_of_other_kernels_are_counted(tmp_path):
+    old, new = Setting("MCC OCR 1", "paper", 0.05), Setting("MCC OCR 1", "paper", 0.1)
+    for setting, mark in ((old, "another"), (new, CORE_MARK)):
+        content = as_dict(setting, replace(OUTCOME, mark=mark))
+        (tmp_path / f"{setting.key}.json").write_text(json.dumps(content), encoding="utf-8")
+    found = outcomes(tmp_path, [old, new])
+    assert found[new] == replace(OUTCOME, mark=CORE_MARK)
+    assert made_with_other_kernels([*found.values(), None]) == 1

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from materials import SimulationError
 from mpm_core.output import atomic
+from mpm_core.sources import CORE_MARK
 from validation.speed_error.setting import Outcome, Setting, as_dict, measured_outcome
 
 
@@ -15,6 +16,11 @@ def outcomes(
     """The outcome of each setting, from its file or from a run; None for one that breaks down."""
     folder.mkdir(parents=True, exist_ok=True)
     return {setting: _outcome(folder / f"{setting.key}.json", setting, announce) for setting in settings}
+
+
+def made_with_other_kernels(found: Iterable[Outcome | None]) -> int:
+    """How many outcomes come from files that older or newer sources left."""
+    return sum(outcome is not None and outcome.mark != CORE_MARK for outcome in found)
 
 
 def _outcome(path: Path, setting: Setting, announce: Callable[[str], None]) -> Outcome | None:
