@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from benchmarks.timing import timed
-from mpm_core.arithmetic import fma
+from materials.compilation import fused
 
 REPEATS = 7
 LEAST_WORK = 2e8
@@ -32,7 +32,7 @@ class Roofline:
 def _triad(a, b, c, factor, rounds):  # type: ignore[no-untyped-def]
     for _ in range(rounds):
         for i in range(len(a)):
-            a[i] = fma(factor, c[i], b[i])
+            a[i] = fused(factor, c[i], b[i])
 
 
 @njit(cache=True)
@@ -41,7 +41,7 @@ def _multiply_adds(x, factor, summand, rounds):  # type: ignore[no-untyped-def]
         for i in range(len(x)):
             value = x[i]
             for _unrolled in range(CHAIN):
-                value = fma(value, factor, summand)
+                value = fused(value, factor, summand)
             x[i] = value
 
 

@@ -14,6 +14,7 @@ bracketed return has to be called.
 from typing import NamedTuple
 
 from materials.cam_clay import TOLERANCE, CamClay, total_slope
+from materials.elementary import fused
 from materials.pointwise import pointwise
 from materials.rheology import shear_modulus
 from materials.tensor import SymmetricTensor, added, contraction, scaled
@@ -129,10 +130,11 @@ def evaluated(plastic_compression: float, relaxation: float, trial: TrialInvaria
     shrunk = trial.shrunk * short_exponential(shrinking)
     mean = short_mean_over_path(growth)
     ratio = trial.ratio * short_exponential(plastic_compression * total_slope(constants))
-    q_squared = shrunk * (trial.q_squared_0 * shrunk + trial.q_squared_1 * mean) + trial.q_squared_2 * mean * mean
+    linear = fused(trial.q_squared_0, shrunk, trial.q_squared_1 * mean)
+    q_squared = fused(shrunk, linear, trial.q_squared_2 * mean * mean)
     grown = 1.0 + relaxation
-    of_flow = plastic_compression * mean - flow_factor(constants) * relaxation * (2.0 - ratio)
-    of_yield = q_squared - grown * grown * (ratio - 1.0)
+    of_flow = fused(plastic_compression, mean, flow_factor(constants) * relaxation * (ratio - 2.0))
+    of_yield = fused(grown * grown, 1.0 - ratio, q_squared)
     return Iterate(plastic_compression, relaxation, of_flow, of_yield, shrunk, mean, ratio, growth)
 
 
@@ -140,21 +142,21 @@ def evaluated(plastic_compression: float, relaxation: float, trial: TrialInvaria
 def improved(last: Iterate, trial: TrialInvariants, constants: CamClay) -> Iterate:
     """One step of Newton's method for both unknowns."""
     d_shrinking = inverse_swelling_index(constants)
-    d_mean = (0.5 - last.growth * (1.0 / 3.0 - 0.125 * last.growth)) * d_shrinking
+    d_mean = fused(last.growth, fused(0.125, last.growth, -1.0 / 3.0), 0.5) * d_shrinking
     d_shrunk = last.shrunk * d_shrinking
     d_ratio = total_slope(constants) * last.ratio
-    d_q_squared = (2.0 * trial.q_squared_0 * last.shrunk + trial.q_squared_1 * last.mean) * d_shrunk + (
-        trial.q_squared_1 * last.shrunk + 2.0 * trial.q_squared_2 * last.mean
-    ) * d_mean
+    of_shrunk = fused(2.0 * trial.q_squared_0, last.shrunk, trial.q_squared_1 * last.mean)
+    of_mean = fused(trial.q_squared_1, last.shrunk, 2.0 * trial.q_squared_2 * last.mean)
+    d_q_squared = fused(of_shrunk, d_shrunk, of_mean * d_mean)
     grown = 1.0 + last.relaxation
     factor = flow_factor(constants)
-    flow_x = last.mean + last.plastic_compression * d_mean + factor * last.relaxation * d_ratio
-    flow_n = -factor * (2.0 - last.ratio)
-    yield_x = d_q_squared - grown * grown * d_ratio
-    yield_n = -2.0 * grown * (last.ratio - 1.0)
-    scale = 1.0 / (flow_x * yield_n - flow_n * yield_x)
-    x = last.plastic_compression - (last.of_flow * yield_n - flow_n * last.of_yield) * scale
-    n = last.relaxation - (flow_x * last.of_yield - last.of_flow * yield_x) * scale
+    flow_x = fused(factor * last.relaxation, d_ratio, fused(last.plastic_compression, d_mean, last.mean))
+    flow_n = factor * (last.ratio - 2.0)
+    yield_x = fused(-grown * grown, d_ratio, d_q_squared)
+    yield_n = 2.0 * grown * (1.0 - last.ratio)
+    scale = -1.0 / fused(flow_x, yield_n, -flow_n * yield_x)
+    x = fused(fused(last.of_flow, yield_n, -flow_n * last.of_yield), scale, last.plastic_compression)
+    n = fused(fused(flow_x, last.of_yield, -last.of_flow * yield_x), scale, last.relaxation)
     return evaluated(x, n, trial, constants)
 
 
@@ -174,10 +176,10 @@ def inverse_swelling_index(constants: CamClay) -> float:
 @pointwise
 def short_exponential(x: float) -> float:
     """exp(x) by its power series, for |x| <= LARGEST_EXPONENT."""
-    odd = 1.0 / 6.0 + x * (1.0 / 24.0)
     square = x * x
-    high = (1.0 / 120.0 + x * (1.0 / 720.0)) + square * (1.0 / 5040.0 + x * (1.0 / 40320.0))
-    return 1.0 + x * (1.0 + x * 0.5 + square * (odd + square * high))
+    low, middle = fused(x, 0.5, 1.0), fused(x, 1.0 / 24.0, 1.0 / 6.0)
+    high = fused(square, fused(x, 1.0 / 40320.0, 1.0 / 5040.0), fused(x, 1.0 / 720.0, 1.0 / 120.0))
+    return fused(x, fused(square, fused(square, high, middle), low), 1.0)
 
 
 @pointwise
@@ -185,7 +187,6 @@ def short_mean_over_path(growth: float) -> float:
     """(1 - exp(-growth))/growth by its power series, for |growth| <= LARGEST_EXPONENT."""
     x = -growth
     square = x * x
-    low = 1.0 + x * 0.5
-    middle = 1.0 / 6.0 + x * (1.0 / 24.0)
-    high = (1.0 / 120.0 + x * (1.0 / 720.0)) + square * (1.0 / 5040.0 + x * (1.0 / 40320.0))
-    return low + square * (middle + square * high)
+    low, middle = fused(x, 0.5, 1.0), fused(x, 1.0 / 24.0, 1.0 / 6.0)
+    high = fused(square, fused(x, 1.0 / 40320.0, 1.0 / 5040.0), fused(x, 1.0 / 720.0, 1.0 / 120.0))
+    return fused(square, fused(square, high, middle), low)

@@ -15,14 +15,31 @@ from pathlib import Path
 from typing import Any
 
 from numba import njit
+from numba.core import types
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
-from numba.extending import register_jitable
+from numba.extending import intrinsic, overload, register_jitable
 
+from materials.elementary import fused
 from materials.errors import InputError
 from materials.law import Law
 from materials.pointwise import MARKED
 
 _CAUSE = re.compile(r"Untyped global|Unknown attribute|NameError|nsupported|not supported|Cannot unify|Invalid use")
+
+
+@intrinsic
+def _rounded_once(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.fma(*arguments)
+
+    return types.float64(types.float64, types.float64, types.float64), generate
+
+
+# Written out, it is the same in every compilation. A licence for the compiler to fuse where it likes (`fastmath`) is
+# not, and runs would no longer repeat bit for bit.
+@overload(fused, jit_options={"forceinline": True})
+def _choose_fused(a, b, c):  # type: ignore[no-untyped-def]
+    return lambda a, b, c: _rounded_once(a, b, c)  # type: ignore[call-arg]  # noqa: PLW0108
 
 
 @cache

@@ -10,6 +10,11 @@ from materials.pointwise import pointwise
 SMALL = 0.01
 
 
+def fused(a: float, b: float, c: float) -> float:
+    """Return a b + c, which compiled code rounds once (`compilation`): one operation rather than two."""
+    return a * b + c
+
+
 @pointwise
 def exponential(x: float) -> float:
     """exp(x), to two units in the last place."""

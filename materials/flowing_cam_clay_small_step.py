@@ -29,6 +29,7 @@ from materials.cam_clay_small_step import (
     short_mean_over_path,
     trial_of,
 )
+from materials.elementary import fused
 from materials.flowing_cam_clay import (
     FlowingCamClay,
     growth_per_number,
@@ -141,8 +142,8 @@ def evaluated_in_flow(
     growth = trial.growth - shrinking
     shrunk = trial.shrunk * short_exponential(shrinking)
     mean = short_mean_over_path(growth)
-    q_squared = shrunk * (trial.q_squared_0 * shrunk + trial.q_squared_1 * mean) + trial.q_squared_2 * mean * mean
-    q_squared = max(q_squared, SMALLEST_Q_SQUARED)
+    linear = fused(trial.q_squared_0, shrunk, trial.q_squared_1 * mean)
+    q_squared = max(fused(shrunk, linear, trial.q_squared_2 * mean * mean), SMALLEST_Q_SQUARED)
     grown = 1.0 + relaxation
     inverse_grown = 1.0 / grown
     per_share = number * math.sqrt(q_squared * shrunk) / mean
@@ -150,8 +151,9 @@ def evaluated_in_flow(
     ratio_at_rest = trial.ratio * short_exponential(plastic_compression * total_slope(at_rest(constants)))
     ratio = ratio_at_rest * growth_by_squaring(inertial_number, constants)
     slope = steady_stress_ratio(inertial_number, constants) * (1.0 / constants.critical_state_ratio)
-    of_flow = plastic_compression * mean - flow_factor(at_rest(constants)) * slope * slope * relaxation * (2.0 - ratio)
-    of_yield = q_squared - slope * slope * grown * grown * (ratio - 1.0)
+    square = slope * slope
+    of_flow = fused(plastic_compression, mean, flow_factor(at_rest(constants)) * square * relaxation * (ratio - 2.0))
+    of_yield = fused(square * grown * grown, 1.0 - ratio, q_squared)
     return FlowingIterate(
         plastic_compression,
         relaxation,
@@ -176,29 +178,29 @@ def improved_in_flow(
 ) -> FlowingIterate:
     """One step of Newton's method for both unknowns."""
     d_shrinking = inverse_swelling_index(at_rest(constants))
-    d_mean = (0.5 - last.growth * (1.0 / 3.0 - 0.125 * last.growth)) * d_shrinking
+    d_mean = fused(last.growth, fused(0.125, last.growth, -1.0 / 3.0), 0.5) * d_shrinking
     d_shrunk = last.shrunk * d_shrinking
-    d_q_squared = (2.0 * trial.q_squared_0 * last.shrunk + trial.q_squared_1 * last.mean) * d_shrunk + (
-        trial.q_squared_1 * last.shrunk + 2.0 * trial.q_squared_2 * last.mean
-    ) * d_mean
+    of_shrunk = fused(2.0 * trial.q_squared_0, last.shrunk, trial.q_squared_1 * last.mean)
+    of_mean = fused(trial.q_squared_1, last.shrunk, 2.0 * trial.q_squared_2 * last.mean)
+    d_q_squared = fused(of_shrunk, d_shrunk, of_mean * d_mean)
     number_x = last.inertial_number * (0.5 * d_q_squared / last.q_squared + 0.5 * d_shrinking - d_mean / last.mean)
     number_n = last.per_share * last.inverse_grown * last.inverse_grown
-    ratio_x = last.ratio * (total_slope(at_rest(constants)) + number_x * growth_per_number(constants))
+    ratio_x = last.ratio * fused(number_x, growth_per_number(constants), total_slope(at_rest(constants)))
     ratio_n = last.ratio * number_n * growth_per_number(constants)
     square = last.slope * last.slope
     d_slope = slope_of_stress_ratio(last.inertial_number, constants) * (1.0 / constants.critical_state_ratio)
     square_x, square_n = 2.0 * last.slope * d_slope * number_x, 2.0 * last.slope * d_slope * number_n
 
-    factor, wet, beyond = flow_factor(at_rest(constants)), 2.0 - last.ratio, last.ratio - 1.0
-    flow_x = last.mean + last.plastic_compression * d_mean
-    flow_x -= factor * last.relaxation * (square_x * wet - square * ratio_x)
-    flow_n = -factor * (square * wet + last.relaxation * (square_n * wet - square * ratio_n))
+    factor, dry, beyond = flow_factor(at_rest(constants)), last.ratio - 2.0, last.ratio - 1.0
+    flow_x = fused(last.plastic_compression, d_mean, last.mean)
+    flow_x = fused(factor * last.relaxation, fused(square_x, dry, square * ratio_x), flow_x)
+    flow_n = factor * fused(last.relaxation, fused(square_n, dry, square * ratio_n), square * dry)
     grown = 1.0 + last.relaxation
-    yield_x = d_q_squared - grown * grown * (square_x * beyond + square * ratio_x)
-    yield_n = -grown * (2.0 * square * beyond + grown * (square_n * beyond + square * ratio_n))
-    scale = 1.0 / (flow_x * yield_n - flow_n * yield_x)
-    x = last.plastic_compression - (last.of_flow * yield_n - flow_n * last.of_yield) * scale
-    n = last.relaxation - (flow_x * last.of_yield - last.of_flow * yield_x) * scale
+    yield_x = fused(-grown * grown, fused(square_x, beyond, square * ratio_x), d_q_squared)
+    yield_n = -grown * fused(grown, fused(square_n, beyond, square * ratio_n), 2.0 * square * beyond)
+    scale = -1.0 / fused(flow_x, yield_n, -flow_n * yield_x)
+    x = fused(fused(last.of_flow, yield_n, -flow_n * last.of_yield), scale, last.plastic_compression)
+    n = fused(fused(flow_x, last.of_yield, -last.of_flow * yield_x), scale, last.relaxation)
     return evaluated_in_flow(x, n, trial, number, constants)
 
 

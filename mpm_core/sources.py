@@ -5,7 +5,6 @@ from pathlib import Path
 from materials.compilation import mark_of_sources
 
 KERNEL_FILES = (
-    "arithmetic",
     "basis",
     "blocks",
     "body_force",
