@@ -15,6 +15,7 @@ from numba import njit, prange
 from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw, named
+from materials.elementary import fused
 from materials.tensor import THIRD, SymmetricTensor, shear_strain_rate, trace
 from mpm_core.blocks import points_of_block
 from mpm_core.columns import (
@@ -54,13 +55,13 @@ def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
     """
     t = angle + angle
     u = t * t
-    sine = t * (1.0 - u * (1.0 / 6.0) * (1.0 - u * (1.0 / 20.0) * (1.0 - u * (1.0 / 42.0) * (1.0 - u * (1.0 / 72.0)))))
-    cosine = 1.0 - u * 0.5 * (
-        1.0 - u * (1.0 / 12.0) * (1.0 - u * (1.0 / 30.0) * (1.0 - u * (1.0 / 56.0) * (1.0 - u * (1.0 / 90.0))))
-    )
+    # the coefficients are inverse factorials
+    sine = fused(u, fused(u, fused(u, fused(u, 1.0 / 362880.0, -1.0 / 5040.0), 1.0 / 120.0), -1.0 / 6.0), 1.0) * t
+    fourth = fused(u, fused(u, fused(u, -1.0 / 3628800.0, 1.0 / 40320.0), -1.0 / 720.0), 1.0 / 24.0)
+    cosine = fused(u, fused(u, fourth, -0.5), 1.0)
     mean, half = 0.5 * (sxx + syy), 0.5 * (sxx - syy)
-    turned = half * cosine - sxy * sine
-    return mean + turned, mean - turned, half * sine + sxy * cosine
+    turned = fused(half, cosine, -sxy * sine)
+    return mean + turned, mean - turned, fused(half, sine, sxy * cosine)
 
 
 @register_jitable
@@ -99,7 +100,8 @@ def bring_forward(rows, first, last, dt, ties, room):  # type: ignore[no-untyped
         # rho (1 - h)/(1 + h), and both volumes, from a single division
         grown, shrunk = 1.0 + half_increment, 1.0 - half_increment
         inverse = 1.0 / (density[p] * grown * shrunk)
-        works[p - first] = (xx * motion.xx + yy * motion.yy + 2.0 * xy * motion.xy) * (inverse * grown * shrunk)
+        power = fused(xx, motion.xx, fused(yy, motion.yy, 2.0 * xy * motion.xy))
+        works[p - first] = power * (inverse * grown * shrunk)
         volumes[p - first] = inverse * grown * grown
         sxx[p], syy[p], sxy[p] = xx, yy, xy
         density[p] *= density[p] * shrunk * shrunk * inverse
