@@ -142,7 +142,7 @@ def report(reports, block, point_mass, sums):  # type: ignore[no-untyped-def]
 def updated_affine(affine, gradient, p, new, old, memory):  # type: ignore[no-untyped-def]
     """Store one component of L, and of A with what it remembers; returns the latter."""
     put_quad(gradient, p, new)
-    value = new + memory * (quad_at(affine, p) - old)
+    value = scaled_sum(memory, quad_at(affine, p) - old, new)
     put_quad(affine, p, value)
     return value
 
@@ -199,9 +199,9 @@ def moved(rows, first, last, dt, memory, velocities, energies, sums):  # type: i
     x, y, vx, vy = rows[X], rows[Y], rows[VX], rows[VY]
     for p in range(first, last, LANES):
         new_vx, new_vy, old_vx, old_vy = four_transposed(velocities.means, p - first)
-        velocity_x = new_vx + memory * (quad_at(vx, p) - old_vx)
-        velocity_y = new_vy + memory * (quad_at(vy, p) - old_vy)
-        new_x, new_y = quad_at(x, p) + dt * new_vx, quad_at(y, p) + dt * new_vy
+        velocity_x = scaled_sum(memory, quad_at(vx, p) - old_vx, new_vx)
+        velocity_y = scaled_sum(memory, quad_at(vy, p) - old_vy, new_vy)
+        new_x, new_y = scaled_sum(dt, new_vx, quad_at(x, p)), scaled_sum(dt, new_vy, quad_at(y, p))
         put_quad(vx, p, velocity_x)
         put_quad(vy, p, velocity_y)
         put_quad(x, p, new_x)
