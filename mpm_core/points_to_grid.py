@@ -30,7 +30,7 @@ from mpm_core.basis import Basis
 from mpm_core.columns import AXX, AXY, AYX, AYY, DENSITY, SXX, SXY, SYY, SZZ, VX, VY
 from mpm_core.grid import BULK, COMPONENTS, PRECISIONS
 from mpm_core.parts import next_part, shares_of, threads_of
-from mpm_core.quads import LANES, filled, put_quad, quad_at
+from mpm_core.quads import LANES, filled, put_quad, quad_at, scaled_sum
 from mpm_core.rows import OF_EVERY_LAW, rows_of
 from mpm_core.scatter import make_scatter
 from mpm_core.sources import CORE_MARK
@@ -57,7 +57,8 @@ class Bringing(NamedTuple):
 @register_jitable(forceinline=True)
 def put_amounts(rows, p, k, point_mass, cell_size, along_x, along_y, bringing):  # type: ignore[no-untyped-def]
     """Store what the four points from p on bring, from point k of a group on."""
-    x, y = along_x.place, along_y.place
+    # to the first node
+    x, y = 0.0 - along_x.place, 0.0 - along_y.place
     affine = point_mass * cell_size
     volume = point_mass / quad_at(rows[DENSITY], p)
     scale = (-1.0 / cell_size) * volume
@@ -67,9 +68,9 @@ def put_amounts(rows, p, k, point_mass, cell_size, along_x, along_y, bringing): 
     px_y, py_y = affine * quad_at(rows[AXY], p), affine * quad_at(rows[AYY], p)
     fx_x, fy_x = scale_x * sxx, scale_x * sxy
     fx_y, fy_y = scale_y * sxy, scale_y * syy
-    px = point_mass * quad_at(rows[VX], p) - (x * px_x + y * px_y)
-    py = point_mass * quad_at(rows[VY], p) - (x * py_x + y * py_y)
-    fx, fy = 0.0 - (x * fx_x + y * fx_y), 0.0 - (x * fy_x + y * fy_y)
+    px = scaled_sum(x, px_x, scaled_sum(y, px_y, point_mass * quad_at(rows[VX], p)))
+    py = scaled_sum(x, py_x, scaled_sum(y, py_y, point_mass * quad_at(rows[VY], p)))
+    fx, fy = scaled_sum(x, fx_x, y * fx_y), scaled_sum(x, fy_x, y * fy_y)
     pressure = (sxx + syy + quad_at(rows[SZZ], p)) * -THIRD
     put_transposed(bringing.brought, COMPONENTS * k, COMPONENTS, px, py, fx, fy)
     bulk = filled(point_mass), volume, volume * pressure, filled(0.0)

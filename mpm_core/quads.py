@@ -95,9 +95,9 @@ def _filled(typing_context: Any, scalar: Any) -> Any:
 def _fused(typing_context: Any, factor: Any, a: Any, b: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         fma = get_or_insert_function(builder.module, ir.FunctionType(_VECTOR, [_VECTOR] * 3), f"llvm.fma.v{LANES}f64")
-        return builder.call(fma, [_in_all_lanes(builder, arguments[0]), arguments[1], arguments[2]])
+        return builder.call(fma, arguments)
 
-    return QUAD(types.float64, QUAD, QUAD), generate
+    return QUAD(QUAD, QUAD, QUAD), generate
 
 
 @intrinsic
@@ -286,9 +286,9 @@ def filled(number: float) -> Any:
 
 
 @register_jitable(forceinline=True)
-def scaled_sum(number: float, a: Any, b: Any) -> Any:
-    """Return number * a + b, rounded once."""
-    return _fused(number, a, b)  # type: ignore[call-arg]
+def scaled_sum(factor: Any, a: Any, b: Any) -> Any:
+    """Return factor * a + b, rounded once; the factor is a number or a quad."""
+    return _fused(as_quad(factor), a, b)  # type: ignore[call-arg]
 
 
 @register_jitable(forceinline=True)

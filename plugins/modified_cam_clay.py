@@ -150,7 +150,8 @@ def constants_of(parameters: Parameters) -> CamClay:
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
     """Speed of longitudinal elastic waves at the present pressure; zero where the point is open."""
-    bulk_modulus = max(0.0, pressure(stress)) / parameters.swelling_index
+    # 1/kappa is the same for all points, and a product takes a third of the time of a division.
+    bulk_modulus = max(0.0, pressure(stress)) * (1.0 / parameters.swelling_index)
     return longitudinal_wave_speed(bulk_modulus, shear_modulus(bulk_modulus, parameters.poisson_ratio), density)
 
 
