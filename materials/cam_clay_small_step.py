@@ -130,24 +130,18 @@ def evaluated(plastic_compression: float, relaxation: float, trial: TrialInvaria
     shrunk = trial.shrunk * short_exponential(shrinking)
     mean = short_mean_over_path(growth)
     ratio = trial.ratio * short_exponential(plastic_compression * total_slope(constants))
-    linear = fused(trial.q_squared_0, shrunk, trial.q_squared_1 * mean)
-    q_squared = fused(shrunk, linear, trial.q_squared_2 * mean * mean)
     grown = 1.0 + relaxation
     of_flow = fused(plastic_compression, mean, flow_factor(constants) * relaxation * (ratio - 2.0))
-    of_yield = fused(grown * grown, 1.0 - ratio, q_squared)
+    of_yield = fused(grown * grown, 1.0 - ratio, q_squared_at(shrunk, mean, trial))
     return Iterate(plastic_compression, relaxation, of_flow, of_yield, shrunk, mean, ratio, growth)
 
 
 @pointwise
 def improved(last: Iterate, trial: TrialInvariants, constants: CamClay) -> Iterate:
     """One step of Newton's method for both unknowns."""
-    d_shrinking = inverse_swelling_index(constants)
-    d_mean = fused(last.growth, fused(0.125, last.growth, -1.0 / 3.0), 0.5) * d_shrinking
-    d_shrunk = last.shrunk * d_shrinking
+    d_mean = slope_of_mean(last.growth) * inverse_swelling_index(constants)
     d_ratio = total_slope(constants) * last.ratio
-    of_shrunk = fused(2.0 * trial.q_squared_0, last.shrunk, trial.q_squared_1 * last.mean)
-    of_mean = fused(trial.q_squared_1, last.shrunk, 2.0 * trial.q_squared_2 * last.mean)
-    d_q_squared = fused(of_shrunk, d_shrunk, of_mean * d_mean)
+    d_q_squared = slope_of_q_squared(last.shrunk, last.mean, d_mean, trial, constants)
     grown = 1.0 + last.relaxation
     factor = flow_factor(constants)
     flow_x = fused(factor * last.relaxation, d_ratio, fused(last.plastic_compression, d_mean, last.mean))
@@ -158,6 +152,28 @@ def improved(last: Iterate, trial: TrialInvariants, constants: CamClay) -> Itera
     x = fused(fused(last.of_flow, yield_n, -flow_n * last.of_yield), scale, last.plastic_compression)
     n = fused(fused(flow_x, last.of_yield, -last.of_flow * yield_x), scale, last.relaxation)
     return evaluated(x, n, trial, constants)
+
+
+@pointwise
+def q_squared_at(shrunk: float, mean: float, trial: TrialInvariants) -> float:
+    """(q_trial/(M p))^2."""
+    linear = fused(trial.q_squared_0, shrunk, trial.q_squared_1 * mean)
+    return fused(shrunk, linear, trial.q_squared_2 * mean * mean)
+
+
+@pointwise
+def slope_of_q_squared(shrunk: float, mean: float, d_mean: float, trial: TrialInvariants, constants: CamClay) -> float:
+    """The same, per plastic volume strain; `d_mean` is that of m."""
+    d_shrunk = shrunk * inverse_swelling_index(constants)
+    of_shrunk = fused(2.0 * trial.q_squared_0, shrunk, trial.q_squared_1 * mean)
+    of_mean = fused(trial.q_squared_1, shrunk, 2.0 * trial.q_squared_2 * mean)
+    return fused(of_shrunk, d_shrunk, of_mean * d_mean)
+
+
+@pointwise
+def slope_of_mean(growth: float) -> float:
+    """How m falls with the growth, by the first terms of its power series."""
+    return fused(growth, fused(0.125, growth, -1.0 / 3.0), 0.5)
 
 
 @pointwise

@@ -25,8 +25,11 @@ from materials.cam_clay_small_step import (
     TrialInvariants,
     flow_factor,
     inverse_swelling_index,
+    q_squared_at,
     short_exponential,
     short_mean_over_path,
+    slope_of_mean,
+    slope_of_q_squared,
     trial_of,
 )
 from materials.elementary import fused
@@ -109,13 +112,13 @@ def flowing_cam_clay_small_step(
     last = improved_in_flow(fourth, trial, number, constants)
 
     yields = elastic.of_yield > 0.0
-    relaxation = last.relaxation if yields else 0.0
+    inverse_grown = last.inverse_grown if yields else 1.0
     shrunk = last.shrunk if yields else elastic.shrunk
     mean = last.mean if yields else elastic.mean
     ratio_at_rest = last.ratio_at_rest if yields else elastic.ratio_at_rest
     ratio = last.ratio if yields else elastic.ratio
     p = start_pressure / shrunk
-    s = scaled(added(start_deviator, scaled(sheared, p * mean)), 1.0 / (1.0 + relaxation))
+    s = scaled(added(start_deviator, scaled(sheared, p * mean)), inverse_grown)
     succeeded = is_short(elastic, constants) and (not yields or (is_root(last) and is_short(last, constants)))
     return SmallFlowingStep(p, ratio_at_rest * p, s, last.inertial_number if yields else 0.0, ratio, succeeded)
 
@@ -142,8 +145,7 @@ def evaluated_in_flow(
     growth = trial.growth - shrinking
     shrunk = trial.shrunk * short_exponential(shrinking)
     mean = short_mean_over_path(growth)
-    linear = fused(trial.q_squared_0, shrunk, trial.q_squared_1 * mean)
-    q_squared = max(fused(shrunk, linear, trial.q_squared_2 * mean * mean), SMALLEST_Q_SQUARED)
+    q_squared = max(q_squared_at(shrunk, mean, trial), SMALLEST_Q_SQUARED)
     grown = 1.0 + relaxation
     inverse_grown = 1.0 / grown
     per_share = number * math.sqrt(q_squared * shrunk) / mean
@@ -178,11 +180,8 @@ def improved_in_flow(
 ) -> FlowingIterate:
     """One step of Newton's method for both unknowns."""
     d_shrinking = inverse_swelling_index(at_rest(constants))
-    d_mean = fused(last.growth, fused(0.125, last.growth, -1.0 / 3.0), 0.5) * d_shrinking
-    d_shrunk = last.shrunk * d_shrinking
-    of_shrunk = fused(2.0 * trial.q_squared_0, last.shrunk, trial.q_squared_1 * last.mean)
-    of_mean = fused(trial.q_squared_1, last.shrunk, 2.0 * trial.q_squared_2 * last.mean)
-    d_q_squared = fused(of_shrunk, d_shrunk, of_mean * d_mean)
+    d_mean = slope_of_mean(last.growth) * d_shrinking
+    d_q_squared = slope_of_q_squared(last.shrunk, last.mean, d_mean, trial, at_rest(constants))
     number_x = last.inertial_number * (0.5 * d_q_squared / last.q_squared + 0.5 * d_shrinking - d_mean / last.mean)
     number_n = last.per_share * last.inverse_grown * last.inverse_grown
     ratio_x = last.ratio * fused(number_x, growth_per_number(constants), total_slope(at_rest(constants)))

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from cam_clay_states import random_deviator, random_strain
 
-from materials import SymmetricTensor, half_norm, scaled
+from materials import SymmetricTensor
 from materials.cam_clay import CamClay, cam_clay_step
 from materials.cam_clay_small_step import cam_clay_small_step
 from materials.registry import get_material
@@ -18,14 +19,9 @@ def random_step(rng, size):
     p = 10.0 ** rng.uniform(0.5, 5.0)
     preconsolidation_pressure = p * 10.0 ** rng.uniform(0.0, 1.5)
     q = 1.2 * math.sqrt(p * (preconsolidation_pressure - p)) * rng.choice([1.0, rng.uniform()])
-    direction = rng.normal(size=6)
-    direction[:3] -= direction[:3].mean()
-    s = SymmetricTensor(*direction)
-    s = scaled(s, q / (math.sqrt(3.0) * half_norm(s)))
-    strain = rng.normal(size=6) * size
-    compression = -strain[:3].sum()
-    strain[:3] -= strain[:3].mean()
-    return p, s, compression, SymmetricTensor(*strain), preconsolidation_pressure
+    s = random_deviator(rng, q)
+    compression, shear = random_strain(rng, size)
+    return p, s, compression, shear, preconsolidation_pressure
 
 
 @pytest.mark.parametrize(("size", "share"), [(1e-6, 1.0), (1e-5, 1.0), (1e-4, 0.98), (1e-3, 0.2)])

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from cam_clay_states import random_deviator, random_strain
 
-from materials import SymmetricTensor, half_norm, scaled
+from materials import SymmetricTensor, half_norm
 from materials.flowing_cam_clay import FlowingCamClay, growth_of_surface, steady_stress_ratio
 from materials.flowing_cam_clay_small_step import flowing_cam_clay_small_step
 from materials.flowing_cam_clay_step import flowing_cam_clay_step
@@ -19,14 +20,8 @@ def random_step(rng, size, change=1.0):
     p, number = 10.0 ** rng.uniform(0.5, 5.0), 10.0 ** rng.uniform(-6.0, 0.0)
     p_c = p * 10.0 ** rng.uniform(0.0, 1.5)
     q = steady_stress_ratio(number, CONSTANTS) * math.sqrt(p * (p_c - p)) * rng.choice([1.0, rng.uniform()])
-    direction = rng.normal(size=6)
-    direction[:3] -= direction[:3].mean()
-    s = SymmetricTensor(*direction)
-    s = scaled(s, q / (math.sqrt(3.0) * half_norm(s)))
-    strain = rng.normal(size=6) * size
-    compression = -strain[:3].sum()
-    strain[:3] -= strain[:3].mean()
-    shear = SymmetricTensor(*strain)
+    s = random_deviator(rng, q)
+    compression, shear = random_strain(rng, size)
     dt = half_norm(shear) * CONSTANTS.grain_diameter * math.sqrt(CONSTANTS.grain_density / p) / (number * change)
     return p, s, compression, shear, p_c / growth_of_surface(number, CONSTANTS), number, dt
 

@@ -70,40 +70,33 @@ def test_code_of_two_laws_from_the_disk_cache_is_not_mixed_up():
     assert sums(*LAWS) == f"{here}\n"
 
 
+# One compiled step of the fluid of each of some law files; prints where the last of them ends.
+STEP_OF_FILES = (
+    "import sys; from pathlib import Path; from materials import SymmetricTensor, isotropic; "
+    "from materials.registry import Registry; "
+    "from materials.compilation import make_single_step, pointwise_law\n"
+    "for path in map(Path, sys.argv[1:]):\n"
+    "    found = Registry(); found.load_file(path); law = found.get('newtonian').law\n"
+    "    values = law.parameter_sets['glycerol'].parameters; stress = isotropic(-1.0)\n"
+    "    state = law.initial_state(stress, 1261.0, values)\n"
+    "    step = make_single_step(pointwise_law(law))\n"
+    "    end = step(stress, SymmetricTensor(1.0, *5 * (0.0,)), 1261.0, state, values, 1e-5)\n"
+    "print([tuple(v) for v in end])"
+)
+
+
 def test_a_copy_of_a_law_leaves_nothing_in_the_disk_cache_that_the_law_stumbles_over(tmp_path):
     """The copy runs first, in a process of its own; its module does not exist in the next."""
-    script = (
-        "import sys; from pathlib import Path; from materials import SymmetricTensor, isotropic; "
-        "from materials.registry import Registry; "
-        "from materials.compilation import make_single_step, pointwise_law; "
-        "found = Registry(); found.load_file(Path(sys.argv[1])); law = found.get('newtonian').law; "
-        "values = law.parameter_sets['glycerol'].parameters; stress = isotropic(-1.0); "
-        "state = law.initial_state(stress, 1261.0, values); "
-        "step = make_single_step(pointwise_law(law)); "
-        "print([tuple(v) for v in step(stress, SymmetricTensor(*6 * (0.0,)), 1261.0, state, values, 1e-5)])"
-    )
     printed = []
     for name in ("first_copy", "second_copy"):
         path = tmp_path / f"{name}.py"
         path.write_text(get_material("newtonian").source_file.read_text())
-        command = [sys.executable, "-c", script, path]
+        command = [sys.executable, "-c", STEP_OF_FILES, path]
         printed.append(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     assert printed[0] == printed[1]
 
 
 def test_laws_from_two_files_of_the_same_name_leave_in_the_disk_cache_what_the_next_process_can_load(tmp_path):
-    script = (
-        "import sys; from pathlib import Path; from materials import SymmetricTensor, isotropic; "
-        "from materials.registry import Registry; "
-        "from materials.compilation import make_single_step, pointwise_law\n"
-        "for path in map(Path, sys.argv[1:]):\n"
-        "    found = Registry(); found.load_file(path); law = found.get('newtonian').law\n"
-        "    values = law.parameter_sets['glycerol'].parameters; stress = isotropic(-1.0)\n"
-        "    state = law.initial_state(stress, 1261.0, values)\n"
-        "    step = make_single_step(pointwise_law(law))\n"
-        "    end = step(stress, SymmetricTensor(1.0, *5 * (0.0,)), 1261.0, state, values, 1e-5)\n"
-        "print([tuple(v) for v in end])"
-    )
     text = get_material("newtonian").source_file.read_text()
     paths = [tmp_path / folder / "fluid.py" for folder in ("one", "other")]
     for path in paths:
@@ -112,7 +105,7 @@ def test_laws_from_two_files_of_the_same_name_leave_in_the_disk_cache_what_the_n
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     printed = [
         subprocess.run(
-            [sys.executable, "-c", script, *given], env=environment, check=True, capture_output=True, text=True
+            [sys.executable, "-c", STEP_OF_FILES, *given], env=environment, check=True, capture_output=True, text=True
         ).stdout
         for given in (paths, paths[1:])
     ]

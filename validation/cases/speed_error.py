@@ -1,6 +1,6 @@
 """What accuracy costs, and whether the settings of `accuracy` keep their word on a column they were not chosen on."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from mpm_core.scene import Scene
@@ -9,7 +9,7 @@ from validation.collapses import SCENES
 from validation.scenes import SCENES as FOLDER_OF_SCENES
 from validation.speed_error.exact import cost_and_error, exact_settings
 from validation.speed_error.front import error, mean_observables, pareto_front
-from validation.speed_error.setting import COLUMNS, Setting
+from validation.speed_error.setting import COLUMNS, Outcome, Setting
 from validation.speed_error.store import made_with_other_kernels, outcomes
 from validation.speed_error.sweep import REFERENCE_CELLS, references, settings
 
@@ -58,7 +58,8 @@ def measure(effort: Effort) -> Evidence:
     """The presets; in full also the sweep over all settings, of all materials and of the exact solution."""
     if effort is Effort.QUICK:
         return Evidence(measured(effort))
-    fronts = {f"collapse, {material}": costs_of_collapse(material) for material in SCENES}
+    found = {material: outcomes(FOLDER, settings(material)) for material in SCENES}
+    fronts = {f"collapse, {material}": costs_of_collapse(material, found[material]) for material in SCENES}
     fronts["driven square, exact"] = costs_of_square()
     figures, notes = [], []
     for name, costs in fronts.items():
@@ -69,16 +70,15 @@ def measure(effort: Effort) -> Evidence:
         )
         figures.append(Figure(f"Error over time, {name}", "processor time [s]", "error", curves, "xy"))
         notes += [f"{name}: {setting}: {cost:.2g} s, error {size:.2g}" for setting, cost, size in front]
-    others = sum(made_with_other_kernels(outcomes(FOLDER, settings(material)).values()) for material in SCENES)
+    others = sum(made_with_other_kernels(of_material.values()) for of_material in found.values())
     if others > 0:
         notes.append(f"{others} outcomes in {FOLDER} were made with other kernels: delete them to measure them again")
     return Evidence(measured(effort), figures=tuple(figures), notes=tuple(notes))
 
 
-def costs_of_collapse(material: str) -> Costs:
+def costs_of_collapse(material: str, found: Mapping[Setting, Outcome | None]) -> Costs:
     """Of the paper's column with all settings that do not break down."""
     fine = mean_outcome(references(material, "paper"))
-    found = outcomes(FOLDER, settings(material))
     return {
         setting.key: (outcome.cpu_time, error(outcome, fine))
         for setting, outcome in found.items()
