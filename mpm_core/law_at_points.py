@@ -170,13 +170,12 @@ def make_largest_signal_speed(law: PointwiseLaw, mark: str) -> Callable[..., Any
     @named(mark)
     def largest_signal_speed(rows, first, last, parameters):  # type: ignore[no-untyped-def]
         vx, vy = rows[VX], rows[VY]
-        sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
-        law_parameters = parameter_class(*parameters)
+        density, law_parameters = rows[DENSITY], parameter_class(*parameters)
         fastest = np.int64(0)
         for p in range(first, last):
-            stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
+            stress = _stress_at(rows, p)
             sound = sound_speed(stress, density[p], load(rows, p), law_parameters)
-            not_finite = 0.0 * (sxx[p] + syy[p] + szz[p] + sxy[p])
+            not_finite = 0.0 * (stress.xx + stress.yy + stress.zz + stress.xy)
             speed = np.sqrt(vx[p] * vx[p] + vy[p] * vy[p])
             fastest = max(fastest, ordered_bits(speed + sound + not_finite))
         return fastest
@@ -192,11 +191,9 @@ def make_find_stiffness(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
     @register_jitable
     @named(mark)
     def find_stiffness(rows, first, last, parameters, stiffness):  # type: ignore[no-untyped-def]
-        sxx, syy, szz, sxy, density = rows[SXX], rows[SYY], rows[SZZ], rows[SXY], rows[DENSITY]
-        law_parameters = parameter_class(*parameters)
+        density, law_parameters = rows[DENSITY], parameter_class(*parameters)
         for p in range(first, last):
-            stress = SymmetricTensor(sxx[p], syy[p], szz[p], sxy[p], 0.0, 0.0)
-            sound = sound_speed(stress, density[p], load(rows, p), law_parameters)
+            sound = sound_speed(_stress_at(rows, p), density[p], load(rows, p), law_parameters)
             stiffness[p - first] = density[p] * sound * sound
 
     return find_stiffness
