@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 from numba import njit
-from numba.core import types
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
 from numba.extending import intrinsic, overload, register_jitable
 
@@ -23,6 +22,7 @@ from materials.elementary import fused
 from materials.errors import InputError
 from materials.law import Law
 from materials.pointwise import MARKED
+from materials.single_precision import in_single
 
 _CAUSE = re.compile(r"Untyped global|Unknown attribute|NameError|nsupported|not supported|Cannot unify|Invalid use")
 
@@ -32,7 +32,7 @@ def _rounded_once(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.fma(*arguments)
 
-    return types.float64(types.float64, types.float64, types.float64), generate
+    return a(a, a, a), generate
 
 
 # Written out, it is the same in every compilation. A licence for the compiler to fuse where it likes (`fastmath`) is
@@ -82,9 +82,14 @@ def mark_of_sources(files: Iterable[Path], modules: Iterable[str] = ()) -> str:
 
 @dataclass(frozen=True)
 class PointwiseLaw:
-    """A law's functions, callable from compiled code, and the mark of all the sources behind them."""
+    """A law's functions, callable from compiled code, and the mark of all the sources behind them.
+
+    The precision is that of the numbers that `update`, `sound_speed` and `small_step` take and return; the others take
+    doubles.
+    """
 
     name: str
+    precision: str
     parameters: type[Any]
     state: type[Any]
     initial_state: Callable[..., Any]
@@ -128,24 +133,29 @@ def _name_by_module(kind: type[Any]) -> None:
 
 
 @cache
-def pointwise_law(law: Law) -> PointwiseLaw:
-    """The functions of a law, registered with the compiler."""
+def pointwise_law(law: Law, precision: str = "double") -> PointwiseLaw:
+    """The functions of a law in a precision, registered with the compiler."""
     _register_helpers()
     functions: list[Callable[..., Any]] = [law.initial_state, law.update, law.sound_speed]
     optional = [function for function in (law.small_step, law.stored_energy) if function is not None]
     modules = {law.parameters.__module__, law.state.__module__}
     for kind in (law.parameters, law.state):
         _name_by_module(kind)
+    files = _source_files([*functions, *optional])
+    register: Callable[..., Any] = _register_marked
+    if precision == "single":
+        files, register = files | {Path(inspect.getfile(in_single))}, in_single
     return PointwiseLaw(
         name=law.name,
+        precision=precision,
         parameters=law.parameters,
         state=law.state,
         initial_state=_register_marked(law.initial_state),
-        update=_register_marked(law.update),
-        sound_speed=_register_marked(law.sound_speed),
-        small_step=_register_marked(law.small_step) if law.small_step is not None else None,
+        update=register(law.update),
+        sound_speed=register(law.sound_speed),
+        small_step=register(law.small_step) if law.small_step is not None else None,
         stored_energy=_register_marked(law.stored_energy) if law.stored_energy is not None else None,
-        mark=f"{law.name}_{mark_of_sources(_source_files([*functions, *optional]), modules)}",
+        mark=f"{law.name}_{precision}_{mark_of_sources(files, modules)}",
     )
 
 

@@ -61,6 +61,9 @@ class Law:
     small_step      like `update`, but -> (stress, state, succeeded): a shorter way without loops, for steps as small as
                     the core takes, that the compiler can take for many points at once; where it says that it has not
                     succeeded, `update` is called. None for a law whose `update` is that short itself (version 2)
+    holds_in_single whether `update` and `sound_speed` hold in single precision: without a loop that ends at a tolerance
+                    below 1e-6, nor a difference of numbers that agree to seven digits. Bodies in single precision have
+                    other laws computed in double (version 2)
 
     The functions take and return scalars and NamedTuples, call only `math` and functions marked with
     `pointwise`, and have no side effects.
@@ -83,6 +86,7 @@ class Law:
     small_step: (
         Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any, bool]] | None
     ) = None
+    holds_in_single: bool = False
 
     def checked(self, values: dict[str, Any], where: str) -> Any:
         """Parameters of this law from values by name; `where` names their place in messages. Raises InputError."""
@@ -140,8 +144,8 @@ def _check_hook_version(law: Law) -> None:
         raise DeclarationError(
             f"written for hook version {written_for}; {understood}: the law has to be brought up to date"
         )
-    for name in ("small_step", "stored_energy", "at_bound", "viscosity"):
-        if getattr(law, name) is not None and written_for < STATEMENTS_VERSION:
+    for name in ("small_step", "stored_energy", "at_bound", "viscosity", "holds_in_single"):
+        if getattr(law, name) and written_for < STATEMENTS_VERSION:
             raise DeclarationError(
                 f"{name} belongs to hook version {STATEMENTS_VERSION}; the law says hook_version={written_for}"
             )

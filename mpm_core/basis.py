@@ -2,7 +2,7 @@
 
 Each basis gives, for a point at the distance f from the first node of its stencil, the weights of the `width` nodes
 along one axis, and the second moment sum(w (i - f)^2), by which the affine transfer and the moving-least-squares
-gradient are scaled (Jiang et al. 2015; Hu et al. 2018). The functions take one point, or four in a quad (`quads`).
+gradient are scaled (Jiang et al. 2015; Hu et al. 2018). The functions take a point, or several side by side (`lanes`).
 
 A wall lies on a line of nodes, and stencils of points near it reach a ghost node beyond. The ghost's velocity is tied
 to the two nodes inside by linear extrapolation, v_ghost = 2 v_wall - v_inside, which changes the weights: twice the
@@ -17,7 +17,7 @@ from typing import Any
 from numba.extending import register_jitable
 
 from materials.compilation import named
-from mpm_core.quads import greater, lesser, some_equal, truncated, where_equal
+from mpm_core.lane_arithmetic import greater, lesser, narrowed, some_equal, truncated, where_equal
 from mpm_core.sources import CORE_MARK
 
 # Towards a wall the moment goes to zero with the mass of the row inside, and stiffness over mass grows without bound.
@@ -148,25 +148,25 @@ BASES = {
 }
 
 
-def make_stencil(basis: Basis) -> Callable[..., Any]:
+def make_stencil(basis: Basis, precision: str = "double") -> Callable[..., Any]:
     """A function (grid coordinate, lower ghost, upper ghost) -> (first node, f, weights, moment, 1/moment).
 
-    The first node is a whole number, but a float, and a quad if the coordinate is one.
+    The first node is a whole number, but a double, like the coordinate, or lanes of them; the rest has the precision.
     """
     width, offset, weights = basis.width, basis.offset, basis.weights
     moment_of, at_lower_wall, at_upper_wall = basis.moment, basis.lower_wall, basis.upper_wall
     smallest = SMALLEST_MOMENT_AT_WALL if width > 2 else SMALLEST_MOMENT_OF_HATS
-    select = _make_select(width)
+    select, rounded = _make_select(width), narrowed if precision == "single" else _as_it_is
     # Away from walls the moment of wide splines is the same everywhere, and no point needs a division.
     inverse_inside = 1.0 / basis.moment(1.0) if width > 2 else 0.0
 
     @register_jitable
-    @named(f"{basis.name}_{CORE_MARK}")
+    @named(f"{basis.name}_{precision}_{CORE_MARK}")
     def stencil(coordinate, lower_ghost, upper_ghost):  # type: ignore[no-untyped-def]
         # A point exactly on the upper wall belongs to the last cell.
         last_first = float(upper_ghost - width + 1)
         first = lesser(truncated(coordinate - offset), last_first)
-        f = coordinate - first
+        f = rounded(coordinate - first)
         w, moment, lower = weights(f), greater(moment_of(f), smallest), float(lower_ghost)
         inverse = inverse_inside + 0.0 * f if width > 2 else 1.0 / moment
         if some_equal(first, lower) or some_equal(first, last_first):
@@ -177,6 +177,11 @@ def make_stencil(basis: Basis) -> Callable[..., Any]:
         return first, f, w, moment, inverse
 
     return stencil
+
+
+@register_jitable
+def _as_it_is(a):  # type: ignore[no-untyped-def]
+    return a
 
 
 def _make_select(width: int) -> Callable[..., Any]:

@@ -6,7 +6,7 @@ threads.
 
 from numba.extending import register_jitable
 
-from mpm_core.quads import LANES
+from mpm_core.lanes import MOST_AT_ONCE
 
 # Points of a block, at most.
 BLOCK = 2048
@@ -23,6 +23,6 @@ def blocks_of(points: int) -> int:
 
 @register_jitable
 def points_of_block(block, blocks, count):  # type: ignore[no-untyped-def]
-    """First point of a block, and the one behind its last; all blocks are equally long, in whole quads."""
-    quads = (count + blocks * LANES - 1) // (blocks * LANES)
-    return min(block * quads * LANES, count), min((block + 1) * quads * LANES, count)
+    """First point of a block, and the one behind its last; all blocks are equally long, in whole registers."""
+    length = MOST_AT_ONCE * ((count + blocks * MOST_AT_ONCE - 1) // (blocks * MOST_AT_ONCE))
+    return min(block * length, count), min((block + 1) * length, count)

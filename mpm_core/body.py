@@ -11,12 +11,13 @@ from materials.compilation import explained, pointwise_law
 from materials.law import Law
 from mpm_core.basis import Basis
 from mpm_core.blocks import blocks_of
-from mpm_core.columns import AFFINE, DENSITY, FIRST_STATE, GRADIENT, NAMES, SXX, SXY, SYY, SZZ, VX, VY, X, Y
+from mpm_core.columns import AFFINE, DENSITY, FIRST_STATE, GRADIENT, NAMES, RESTS, SXX, SXY, SYY, SZZ, VX, VY
 from mpm_core.grid import Grid
 from mpm_core.grid_to_points import REPORTS as TRANSFER_REPORTS
 from mpm_core.grid_to_points import make_grid_to_points
+from mpm_core.lanes import MOST_AT_ONCE
+from mpm_core.places import places_of, put_places
 from mpm_core.points_to_grid import make_points_to_grid
-from mpm_core.quads import LANES
 from mpm_core.sorting import reorder, sort_by_stencil
 from mpm_core.stress import MAX_SIGNAL_SPEED, make_stress_pass
 from mpm_core.stress import REPORTS as STRESS_REPORTS
@@ -90,7 +91,8 @@ class Body:
     @property
     def column_names(self) -> tuple[str, ...]:
         """What the rows of `points` hold."""
-        return (*NAMES, *self.law.state._fields, *(["shear_strain"] if self._keeps_shear_strain else []))
+        shear_strain = ("shear_strain",) if self._keeps_shear_strain else ()
+        return (*NAMES, *self.law.state._fields, *shear_strain, *self._rests)
 
     @property
     def states(self) -> NDArray[np.float64]:
@@ -104,17 +106,42 @@ class Body:
 
     @property
     def _keeps_shear_strain(self) -> bool:
-        return len(self.points) > FIRST_STATE + len(self.law.state._fields)
+        return len(self.points) > FIRST_STATE + len(self.law.state._fields) + len(self._rests)
 
-    def choose_kernels(self, basis: Basis, precision: str, spreads: bool) -> None:
+    @property
+    def _rests(self) -> tuple[str, ...]:
+        return RESTS if self.precision == "single" else ()
+
+    @property
+    def precision(self) -> str:
+        """In what precision the points are stored."""
+        return "single" if self.storage.dtype == np.float32 else "double"
+
+    @property
+    def _of_law(self) -> str:
+        """In what precision the law is computed."""
+        return self.precision if self.law.holds_in_single else "double"
+
+    def choose_kernels(self, basis: Basis, spreads: bool) -> None:
         """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""
         ties = self.is_loose
-        self._points_to_grid = make_points_to_grid(basis, precision)
-        self._grid_to_points = make_grid_to_points(basis, ties=False, spreads=False)
-        self._tying_grid_to_points = make_grid_to_points(basis, ties, spreads and ties)
-        self._stress_pass = make_stress_pass(pointwise_law(self.law), self._keeps_shear_strain)
-        no_points, parameters = (self.storage, 0), tuple(self.parameters)
-        explained(self.law, self._stress_pass, *no_points, 1.0, parameters, 0.0, 0.0, 0.0, 1, self.stress_reports[:0])
+        self._points_to_grid = make_points_to_grid(basis, self.precision)
+        self._grid_to_points = make_grid_to_points(basis, False, False, self.precision)
+        self._tying_grid_to_points = make_grid_to_points(basis, ties, spreads and ties, self.precision)
+        law = pointwise_law(self.law, self._of_law)
+        self._stress_pass = make_stress_pass(law, self._keeps_shear_strain, self.precision)
+        no_points = self.storage, 0, 1.0, self._law_parameters()
+        explained(self.law, self._stress_pass, *no_points, 0.0, 0.0, 0.0, 1, self.stress_reports[:0])
+
+    def _law_parameters(self) -> tuple[Any, ...]:
+        """The law's parameters as its compiled functions take them."""
+        plain = tuple(self.parameters)
+        return tuple(map(np.float32, plain)) if self._of_law == "single" else plain
+
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """Coordinates of all points in double precision, whatever that of `points` is, shape (2, n) [m]."""
+        return places_of(self.points)
 
     @property
     def velocities(self) -> NDArray[np.float64]:
@@ -140,7 +167,7 @@ class Body:
     def divide(self, asleep: NDArray[np.bool_]) -> None:
         """Put the points that are to sleep, of all, behind the others; the speed of those that fall asleep is zero.
 
-        Passes take `LANES` points at a time, so that a few more may have to stay awake.
+        Passes take `MOST_AT_ONCE` points at a time, so that a few more may have to stay awake.
         """
         fastest = float(self.stress_reports[:, MAX_SIGNAL_SPEED].max(initial=self.signal_speed_asleep))
         self.signal_speed_asleep = fastest if asleep.any() else 0.0
@@ -150,7 +177,7 @@ class Body:
         order = np.argsort(asleep[first:], kind="stable").astype(np.int32)
         reorder(self.storage, self.ids, first, order)
         awake = len(asleep) - int(np.count_nonzero(asleep))
-        self.set_awake(min(len(asleep), -(-awake // LANES) * LANES))
+        self.set_awake(min(len(asleep), -(-awake // MOST_AT_ONCE) * MOST_AT_ONCE))
 
     def to_grid(self, grid: Grid, threads: int) -> None:
         """Scatter mass, momentum and internal force of the points that are awake."""
@@ -194,8 +221,9 @@ class Body:
 
     def wrap(self, axis: int, lower: float, period: float) -> None:
         """Bring points that left through a periodic side back in through the other."""
-        coordinate = self.points[(X, Y)[axis]]
-        coordinate[:] = lower + np.mod(coordinate - lower, period)
+        places = self.places
+        places[axis] = lower + np.mod(places[axis] - lower, period)
+        put_places(self.points, places)
 
     def update_stress(self, dt: float, tied: float = 0.0, exchange: float = 0.0, threads: int = 1) -> None:
         """Rotate the stress, bring the density forward, call the law.
@@ -203,9 +231,8 @@ class Body:
         `tied` is the time [s] for which the volumes of loose grains are tied in this step, `exchange` that time over
         the time constant of the transfer.
         """
-        tied, parameters = tied if self.is_loose else 0.0, tuple(self.parameters)
-        points = self.storage, self.awake
-        self._stress_pass(*points, self.point_mass, parameters, dt, tied, exchange, threads, self.stress_reports)
+        tied, points = tied if self.is_loose else 0.0, (self.storage, self.awake, self.point_mass)
+        self._stress_pass(*points, self._law_parameters(), dt, tied, exchange, threads, self.stress_reports)
 
     def state(self, name: str) -> NDArray[np.float64]:
         """A state variable of all points, in their present order. Raises InputError for an unknown name."""

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from materials.compilation import named
 from mpm_core.basis import Basis, make_stencil
 from mpm_core.body import Body
-from mpm_core.columns import X, Y
 from mpm_core.grid import COMPONENTS, FX, FY, Grid
 from mpm_core.sources import CORE_MARK
 
@@ -25,8 +24,7 @@ BodyForce = Callable[[Body, float], NDArray[np.float64]]
 def scatter_body_force(body: Body, acceleration: NDArray[np.float64], grid: Grid, basis: Basis) -> None:
     """Add w_i m b of each point to the forces of the nodes."""
     _make_scatter(basis)(
-        body.points[X],
-        body.points[Y],
+        *body.places,
         body.point_mass * acceleration,
         grid.nodes,
         grid.shape[1],

@@ -1,11 +1,15 @@
 """The columns of the point array: one contiguous row of memory per quantity, the same order for every law.
 
 The law's state variables follow after `FIRST_STATE`, in the order of its declaration, and the accumulated shear strain
-after them, where a scene writes it.
+after them, where a scene writes it. Points in single precision end with what singles leave out of x and y (`places`).
 """
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from materials.precision import PRECISIONS
 
 NAMES = (
     *("x", "y", "velocity_x", "velocity_y"),
@@ -26,14 +30,21 @@ DENSITY = 16
 MEAN_AROUND, CROWDING = 17, 18
 FIRST_STATE = len(NAMES)
 
-DOUBLES_PER_CACHE_LINE = 8
+# From the end, in single precision.
+REST_X, REST_Y = -2, -1
+RESTS = ("rest_of_x", "rest_of_y")
+
+# In bytes.
+CACHE_LINE = 64
 
 
-def allocate(columns: int, points: int) -> NDArray[np.float64]:
+def allocate(columns: int, points: int, precision: str = "double") -> NDArray[Any]:
     """Zeroed rows for some points, in whole cache lines, that do not fall on the same cache sets.
 
     Rows a multiple of 4096 bytes apart would evict one another; an odd number of cache lines between them cannot.
     """
-    lines = -(-points // DOUBLES_PER_CACHE_LINE)
+    number = PRECISIONS[precision]
+    per_line = CACHE_LINE // np.dtype(number).itemsize
+    lines = -(-points // per_line)
     lines += 1 - lines % 2
-    return np.zeros((columns, lines * DOUBLES_PER_CACHE_LINE))
+    return np.zeros((columns, lines * per_line), number)

@@ -5,13 +5,13 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+import numpy as np
 from numba import njit
 
 from materials.compilation import PointwiseLaw, explained, named, pointwise_law
-from materials.tensor import SymmetricTensor
 from mpm_core.body import Body
-from mpm_core.columns import DENSITY, SXX, SXY, SYY, SZZ, X
-from mpm_core.law_at_points import make_state_access
+from mpm_core.columns import DENSITY, X
+from mpm_core.law_at_points import make_state_access, point_access
 from mpm_core.sources import CORE_MARK
 
 
@@ -22,6 +22,7 @@ def _sum_over_points(law: PointwiseLaw) -> Callable[..., Any]:
     parameter_class = law.parameters
     mark = f"{law.mark}_{CORE_MARK}"
     load, _ = make_state_access(law.state, mark)
+    stress_at, _ = point_access("double")
 
     @njit(error_model="numpy", cache=True)
     @named(mark)
@@ -29,8 +30,7 @@ def _sum_over_points(law: PointwiseLaw) -> Callable[..., Any]:
         law_parameters = parameter_class(*parameters)
         total = 0.0
         for p in range(len(rows[X])):
-            stress = SymmetricTensor(rows[SXX][p], rows[SYY][p], rows[SZZ][p], rows[SXY][p], 0.0, 0.0)
-            total += stored_energy(stress, rows[DENSITY][p], load(rows, p), law_parameters)
+            total += stored_energy(stress_at(rows, p), np.float64(rows[DENSITY][p]), load(rows, p), law_parameters)
         return total
 
     return sum_of_energies

@@ -15,7 +15,8 @@ from materials.errors import nearest_name
 from materials.law import Law
 from materials.tensor import deviatoric_stress, pressure
 from mpm_core.body import Body
-from mpm_core.columns import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
+from mpm_core.columns import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ, VX, VY
+from mpm_core.law_at_points import point_access
 from mpm_core.output.frame import Field, Frame
 from mpm_core.sources import CORE_MARK
 
@@ -36,14 +37,13 @@ class FieldDeclaration:
 @cache
 def _over_stress(function: Callable[[SymmetricTensor], float]) -> Callable[..., Any]:
     """A kernel that evaluates an invariant of the stress at all points."""
-    invariant = registered(function)
+    invariant, (stress_at, _) = registered(function), point_access("double")
 
     @njit(cache=True)
     @named(f"{function.__name__}_{CORE_MARK}")
     def evaluate(points, values):  # type: ignore[no-untyped-def]
         for p in range(points.shape[1]):
-            stress = SymmetricTensor(points[SXX, p], points[SYY, p], points[SZZ, p], points[SXY, p], 0.0, 0.0)
-            values[p] = invariant(stress)
+            values[p] = invariant(stress_at(points, p))
 
     return evaluate
 
@@ -122,7 +122,7 @@ def _is_available(name: str, laws: Sequence[Law]) -> bool:
 def make_frame(time: float, step: int, bodies: Sequence[Body], names: Sequence[str]) -> Frame:
     """A frame of all bodies, in the order in which their points were generated."""
     order = np.argsort(np.concatenate([body.ids for body in bodies]))
-    plane = np.concatenate([body.points[[X, Y]].T for body in bodies])
+    plane = np.concatenate([body.places.T for body in bodies])
     positions = np.column_stack([plane, np.zeros(len(plane))])
     fields = tuple(_frame_field(name, bodies, order) for name in names)
     return Frame(time, step, positions[order], fields)

@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm_core.quads import LANES
+from materials.precision import PRECISIONS
+from mpm_core.columns import CACHE_LINE
+from mpm_core.lanes import LANES
 
 # Components of a node, two quads, in double precision a cache line. The first quad: momentum and force before the
 # momentum update, new and old velocity after it. The second: mass, volume and volume times pressure before, mass and
@@ -17,11 +19,6 @@ BULK = LANES
 MASS, VOLUME, VOLUME_PRESSURE = BULK, BULK + 1, BULK + 2
 NODE_CROWDING, NODE_PRESSURE, NODE_DENSITY = BULK + 1, BULK + 2, BULK + 3
 COMPONENTS = 2 * LANES
-
-CACHE_LINE = 64
-
-# What the components of a node are stored as.
-PRECISIONS: dict[str, type[np.floating[Any]]] = {"double": np.float64, "single": np.float32}
 
 # Nodes beyond each side of the domain, enough for the widest stencil of a point that touches a wall.
 GHOSTS = 2

@@ -25,29 +25,29 @@ from numba import njit, prange
 from numba.extending import register_jitable
 
 from materials.compilation import named
+from materials.precision import PRECISIONS
 from materials.tensor import SymmetricTensor, shear_strain_rate
 from mpm_core.basis import Basis
 from mpm_core.blocks import points_of_block
-from mpm_core.columns import AXX, AXY, AYX, AYY, CROWDING, LXX, LXY, LYX, LYY, MEAN_AROUND, SXX, SYY, VX, VY, X, Y
+from mpm_core.columns import AXX, AXY, AYX, AYY, CROWDING, LXX, LXY, LYX, LYY, MEAN_AROUND, SXX, SYY, VX, VY
 from mpm_core.grid import BULK, COMPONENTS, NEW_VX
-from mpm_core.parts import next_part, shares_of, threads_of
-from mpm_core.quads import (
-    LANES,
-    filled,
+from mpm_core.lane_arithmetic import (
+    filled_like,
     first_lanes,
     greater,
     largest,
     lesser,
-    put_quad,
-    quad_at,
     scaled_sum,
     smallest,
     total,
     where_equal,
+    widened,
 )
-from mpm_core.rows import OF_EVERY_LAW, rows_of
+from mpm_core.lanes import LANES, LANES_OF, put, quad_at, several_at, single_quad_at, transposed_at
+from mpm_core.parts import next_part, shares_of, threads_of
+from mpm_core.places import place_access
 from mpm_core.sources import CORE_MARK
-from mpm_core.stencils import GROUP, four_transposed, make_find_stencils
+from mpm_core.stencils import GROUP, make_find_stencils
 from mpm_core.volumes import spreading_rate
 
 # What `grid_to_points` reports for each block of points.
@@ -85,7 +85,7 @@ class Gathered(NamedTuple):
 
 
 class Sums(NamedTuple):
-    """What is reported, over the points so far, in four lanes."""
+    """What is reported, over the points so far, in as many lanes as points are taken at once, as doubles."""
 
     twice_energy: Any
     moved_x: Any
@@ -98,17 +98,17 @@ class Sums(NamedTuple):
 
 
 @register_jitable(forceinline=True)
-def no_sums():  # type: ignore[no-untyped-def]
-    """The sums over no points."""
-    zero, infinite, negative = filled(0.0), filled(np.inf), filled(-np.inf)
+def no_sums(like):  # type: ignore[no-untyped-def]
+    """The sums over no points, in lanes like others."""
+    zero, infinite, negative = filled_like(0.0, like), filled_like(np.inf, like), filled_like(-np.inf, like)
     return Sums(zero, zero, zero, zero, infinite, negative, infinite, negative)
 
 
 @register_jitable(forceinline=True)
-def added_to_sums(sums, twice_energy, moved_x, moved_y, x, y, count):  # type: ignore[no-untyped-def]
-    """The sums with four points more, of which only the first `count` exist."""
+def added_to_sums(sums, twice_energy, moved_x, moved_y, x, y, count, at_once):  # type: ignore[no-untyped-def]
+    """The sums with some points more, of which only the first `count` exist."""
     lowest_x, lowest_y, highest_x, highest_y = x, y, x, y
-    if count < LANES:
+    if count < at_once:
         twice_energy = first_lanes(twice_energy, count, 0.0)
         moved_x, moved_y = first_lanes(moved_x, count, 0.0), first_lanes(moved_y, count, 0.0)
         lowest_x, lowest_y = first_lanes(x, count, np.inf), first_lanes(y, count, np.inf)
@@ -141,94 +141,101 @@ def report(reports, block, point_mass, sums):  # type: ignore[no-untyped-def]
 @register_jitable(forceinline=True)
 def updated_affine(affine, gradient, p, new, old, memory):  # type: ignore[no-untyped-def]
     """Store one component of L, and of A with what it remembers; returns the latter."""
-    put_quad(gradient, p, new)
-    value = scaled_sum(memory, quad_at(affine, p) - old, new)
-    put_quad(affine, p, value)
+    put(gradient, p, new)
+    value = scaled_sum(memory, several_at(affine, p) - old, new)
+    put(affine, p, value)
     return value
 
 
 @register_jitable(forceinline=True)
-def updated_gradients(rows, first, last, cell_size, memory, receiving, velocities, energies):  # type: ignore[no-untyped-def]
+def updated_gradients(rows, first, last, at_once, cell_size, memory, receiving, velocities, energies):  # type: ignore[no-untyped-def]
     """Update L and A of a group; `energies` receives A:A D of the points."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     axx, axy, ayx, ayy = rows[AXX], rows[AXY], rows[AYX], rows[AYY]
     square = cell_size * cell_size
-    for p in range(first, last, LANES):
+    for p in range(first, last, at_once):
         k = p - first
-        new_xx, new_yx, old_xx, old_yx = four_transposed(velocities.gradients_x, k)
-        new_xy, new_yy, old_xy, old_yy = four_transposed(velocities.gradients_y, k)
+        new_xx, new_yx, old_xx, old_yx = transposed_at(velocities.gradients_x, k)
+        new_xy, new_yy, old_xy, old_yy = transposed_at(velocities.gradients_y, k)
         xx = updated_affine(axx, lxx, p, new_xx, old_xx, memory)
         yx = updated_affine(ayx, lyx, p, new_yx, old_yx, memory)
         xy = updated_affine(axy, lxy, p, new_xy, old_xy, memory)
         yy = updated_affine(ayy, lyy, p, new_yy, old_yy, memory)
-        along_x = (xx * xx + yx * yx) * quad_at(receiving.moment_x, k)
-        along_y = (xy * xy + yy * yy) * quad_at(receiving.moment_y, k)
-        put_quad(energies, k, square * (along_x + along_y))
+        along_x = (xx * xx + yx * yx) * several_at(receiving.moment_x, k)
+        along_y = (xy * xy + yy * yy) * several_at(receiving.moment_y, k)
+        put(energies, k, square * (along_x + along_y))
 
 
 @register_jitable(forceinline=True)
-def updated_surroundings(rows, first, last, bulk):  # type: ignore[no-untyped-def]
+def updated_surroundings(rows, first, last, at_once, bulk):  # type: ignore[no-untyped-def]
     """Update the averages of the material around a group."""
     mean_around, crowding, sxx, syy = rows[MEAN_AROUND], rows[CROWDING], rows[SXX], rows[SYY]
-    for p in range(first, last, LANES):
-        _, crowded, pressure, density = four_transposed(bulk.means, p - first)
-        put_quad(crowding, p, crowded)
-        without_sxx = where_equal(quad_at(syy, p), 0.0, density, pressure)
-        put_quad(mean_around, p, where_equal(quad_at(sxx, p), 0.0, without_sxx, pressure))
+    for p in range(first, last, at_once):
+        _, crowded, pressure, density = transposed_at(bulk.means, p - first)
+        put(crowding, p, crowded)
+        without_sxx = where_equal(several_at(syy, p), 0.0, density, pressure)
+        put(mean_around, p, where_equal(several_at(sxx, p), 0.0, without_sxx, pressure))
 
 
 @register_jitable(forceinline=True)
-def spread(rows, first, last, cell_size, dt, receiving, bulk):  # type: ignore[no-untyped-def]
+def spread(rows, first, last, at_once, cell_size, dt, receiving, bulk, place_at, put_place):  # type: ignore[no-untyped-def]
     """Move a group down the gradient of crowding, besides the motion of the material."""
-    x, y = rows[X], rows[Y]
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-    for p in range(first, last, LANES):
+    for p in range(first, last, at_once):
         k = p - first
-        shear = 0.5 * (quad_at(lxy, p) + quad_at(lyx, p))
-        shear_rate = shear_strain_rate(SymmetricTensor(quad_at(lxx, p), quad_at(lyy, p), 0.0, shear, 0.0, 0.0))
+        shear = 0.5 * (several_at(lxy, p) + several_at(lyx, p))
+        shear_rate = shear_strain_rate(SymmetricTensor(several_at(lxx, p), several_at(lyy, p), 0.0, shear, 0.0, 0.0))
         way = dt * cell_size * cell_size * spreading_rate(shear_rate, dt)
-        _, slope_x, _, _ = four_transposed(bulk.gradients_x, k)
-        _, slope_y, _, _ = four_transposed(bulk.gradients_y, k)
-        put_quad(x, p, quad_at(x, p) - way * quad_at(receiving.moment_x, k) * slope_x)
-        put_quad(y, p, quad_at(y, p) - way * quad_at(receiving.moment_y, k) * slope_y)
+        _, slope_x, _, _ = transposed_at(bulk.gradients_x, k)
+        _, slope_y, _, _ = transposed_at(bulk.gradients_y, k)
+        x, y = place_at(rows, p)
+        way_x, way_y = (
+            way * several_at(receiving.moment_x, k) * slope_x,
+            way * several_at(receiving.moment_y, k) * slope_y,
+        )
+        put_place(rows, p, x - widened(way_x), y - widened(way_y))
 
 
 @register_jitable(forceinline=True)
-def moved(rows, first, last, dt, memory, velocities, energies, sums):  # type: ignore[no-untyped-def]
-    """Update velocities and positions of a group; returns the sums with it."""
-    x, y, vx, vy = rows[X], rows[Y], rows[VX], rows[VY]
-    for p in range(first, last, LANES):
-        new_vx, new_vy, old_vx, old_vy = four_transposed(velocities.means, p - first)
-        velocity_x = scaled_sum(memory, quad_at(vx, p) - old_vx, new_vx)
-        velocity_y = scaled_sum(memory, quad_at(vy, p) - old_vy, new_vy)
-        new_x, new_y = scaled_sum(dt, new_vx, quad_at(x, p)), scaled_sum(dt, new_vy, quad_at(y, p))
-        put_quad(vx, p, velocity_x)
-        put_quad(vy, p, velocity_y)
-        put_quad(x, p, new_x)
-        put_quad(y, p, new_y)
-        twice_energy = velocity_x * velocity_x + velocity_y * velocity_y + quad_at(energies, p - first)
-        sums = added_to_sums(sums, twice_energy, new_vx, new_vy, new_x, new_y, float(last - p))
+def moved(rows, first, last, at_once, dt, memory, velocities, energies, sums, place_at, put_place):  # type: ignore[no-untyped-def]
+    """Update velocities and places of a group; returns the sums with it."""
+    vx, vy = rows[VX], rows[VY]
+    for p in range(first, last, at_once):
+        new_vx, new_vy, old_vx, old_vy = transposed_at(velocities.means, p - first)
+        velocity_x = scaled_sum(memory, several_at(vx, p) - old_vx, new_vx)
+        velocity_y = scaled_sum(memory, several_at(vy, p) - old_vy, new_vy)
+        x, y = place_at(rows, p)
+        moved_x, moved_y = widened(new_vx), widened(new_vy)
+        new_x, new_y = scaled_sum(dt, moved_x, x), scaled_sum(dt, moved_y, y)
+        put(vx, p, velocity_x)
+        put(vy, p, velocity_y)
+        put_place(rows, p, new_x, new_y)
+        twice_energy = velocity_x * velocity_x + velocity_y * velocity_y + several_at(energies, p - first)
+        count = float(last - p)
+        sums = added_to_sums(sums, widened(twice_energy), moved_x, moved_y, new_x, new_y, count, at_once)
     return sums
 
 
-def make_gather(basis: Basis, component: int, with_gradients: bool) -> Callable[..., Any]:
+def make_gather(basis: Basis, component: int, with_gradients: bool, precision: str) -> Callable[..., Any]:
     """A function that fills what a group receives of four components of the nodes, and of their gradients."""
     width, first_component = basis.width, np.uint64(component)
+    components_at = quad_at if precision == "double" else single_quad_at
 
     @register_jitable(forceinline=True)
-    @named(f"{basis.name}_{component}_{with_gradients:d}_{CORE_MARK}")
+    @named(f"{basis.name}_{component}_{with_gradients:d}_{precision}_{CORE_MARK}")
     def gather(count, nodes, nodes_y, receiving, gathered):  # type: ignore[no-untyped-def]
         starts, weights_x, weights_y, slopes_x, slopes_y, _, _ = receiving
         means, gradients_x, gradients_y = gathered
         row_length = np.uint64(nodes_y * COMPONENTS)
         for k in range(count):
             row = np.uint64(starts[k]) * np.uint64(COMPONENTS) + first_component
-            mean, gradient_x, gradient_y = filled(0.0), filled(0.0), filled(0.0)
+            nothing = filled_like(0.0, components_at(nodes, row))
+            mean, gradient_x, gradient_y = nothing, nothing, nothing
             for a in range(width):
-                in_row, gradient = filled(0.0), filled(0.0)
+                in_row, gradient = nothing, nothing
                 for b in range(width):
                     at = np.uint64(b * GROUP) + k
-                    values = quad_at(nodes, row + np.uint64(b * COMPONENTS))
+                    values = components_at(nodes, row + np.uint64(b * COMPONENTS))
                     in_row = scaled_sum(weights_y[at], values, in_row)
                     if with_gradients:
                         gradient = scaled_sum(slopes_y[at], values, gradient)
@@ -238,39 +245,39 @@ def make_gather(basis: Basis, component: int, with_gradients: bool) -> Callable[
                     gradient_x = scaled_sum(slopes_x[at], in_row, gradient_x)
                     gradient_y = scaled_sum(weights_x[at], gradient, gradient_y)
                 row += row_length
-            put_quad(means, LANES * k, mean)
+            put(means, LANES * k, mean)
             if with_gradients:
-                put_quad(gradients_x, LANES * k, gradient_x)
-                put_quad(gradients_y, LANES * k, gradient_y)
+                put(gradients_x, LANES * k, gradient_x)
+                put(gradients_y, LANES * k, gradient_y)
 
     return gather
 
 
-def make_put_receiving(basis: Basis) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Functions that make room for how a group receives, and store that of the four points from p on."""
-    width, find_stencils = basis.width, make_find_stencils(basis)
+def make_put_receiving(basis: Basis, precision: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Functions that make room for how a group receives, and store that of the points from p on that go at once."""
+    width, find_stencils, number = basis.width, make_find_stencils(basis, precision), PRECISIONS[precision]
 
     @register_jitable(forceinline=True)
-    @named(f"{basis.name}_{CORE_MARK}")
+    @named(f"{basis.name}_{precision}_{CORE_MARK}")
     def room_for_receiving():  # type: ignore[no-untyped-def]
-        per_point, per_node = np.empty((3, GROUP)), np.empty((4, width * GROUP))
-        return Receiving(per_point[0], per_node[0], per_node[1], per_node[2], per_node[3], per_point[1], per_point[2])
+        starts, moments, per_node = np.empty(GROUP), np.empty((2, GROUP), number), np.empty((4, width * GROUP), number)
+        return Receiving(starts, per_node[0], per_node[1], per_node[2], per_node[3], moments[0], moments[1])
 
     @register_jitable(forceinline=True)
-    @named(f"{basis.name}_{CORE_MARK}")
+    @named(f"{basis.name}_{precision}_{CORE_MARK}")
     def put_axis(k, axis, inverse_size, weights, slopes, moments):  # type: ignore[no-untyped-def]
         scale = inverse_size * axis.per_moment
         for a in range(width):
-            put_quad(weights, a * GROUP + k, axis.weights[a])
-            put_quad(slopes, a * GROUP + k, axis.weights[a] * (float(a) - axis.place) * scale)
-        put_quad(moments, k, axis.moment)
+            put(weights, a * GROUP + k, axis.weights[a])
+            put(slopes, a * GROUP + k, axis.weights[a] * (float(a) - axis.place) * scale)
+        put(moments, k, axis.moment)
 
     @register_jitable(forceinline=True)
-    @named(f"{basis.name}_{CORE_MARK}")
+    @named(f"{basis.name}_{precision}_{CORE_MARK}")
     def put_receiving(rows, p, k, nodes_y, ghosts, origin, inverse_size, receiving):  # type: ignore[no-untyped-def]
         starts, weights_x, weights_y, slopes_x, slopes_y, moment_x, moment_y = receiving
         number, along_x, along_y = find_stencils(rows, p, nodes_y, ghosts, origin, inverse_size)
-        put_quad(starts, k, number)
+        put(starts, k, number)
         put_axis(k, along_x, inverse_size, weights_x, slopes_x, moment_x)
         put_axis(k, along_y, inverse_size, weights_y, slopes_y, moment_y)
 
@@ -278,44 +285,48 @@ def make_put_receiving(basis: Basis) -> tuple[Callable[..., Any], Callable[..., 
 
 
 @cache
-def make_grid_to_points(basis: Basis, ties: bool, spreads: bool) -> Callable[..., Any]:
+def make_grid_to_points(basis: Basis, ties: bool, spreads: bool, precision: str) -> Callable[..., Any]:
     """Give the points velocity, its gradient and, if `ties`, averages of the material around, and move them.
 
     With `spreads`, points also move down the gradient of crowding. `memory` is exp(-dt/tau). Reports per block of
     points: kinetic energy [J/m], corners of the bounding box [m], the largest speed at which a point moves [m/s] and
     the momentum of that motion [kg/s].
     """
-    gather_velocities = make_gather(basis, component=NEW_VX, with_gradients=True)
-    gather_bulk = make_gather(basis, component=BULK, with_gradients=spreads)
-    room_for_receiving, put_receiving = make_put_receiving(basis)
+    gather_velocities = make_gather(basis, NEW_VX, True, precision)
+    gather_bulk = make_gather(basis, BULK, spreads, precision)
+    room_for_receiving, put_receiving = make_put_receiving(basis, precision)
+    rows_of_points, place_at, put_place, _ = place_access(precision)
+    number, at_once = PRECISIONS[precision], LANES_OF[precision]
 
     @njit(parallel=True, error_model="numpy", cache=True)
-    @named(f"{basis.name}_{ties:d}{spreads:d}_{CORE_MARK}")
+    @named(f"{basis.name}_{ties:d}{spreads:d}_{precision}_{CORE_MARK}")
     def grid_to_points(  # type: ignore[no-untyped-def]
         storage, count, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, memory, threads, reports
     ):
-        rows, inverse_size = rows_of(storage, OF_EVERY_LAW), 1.0 / cell_size
+        rows, inverse_size = rows_of_points(storage), 1.0 / cell_size
         shares = shares_of(reports.shape[0], threads)
         for thread in prange(threads_of(shares)):
-            receiving, room = room_for_receiving(), np.empty((7, GROUP * LANES))
+            receiving, room = room_for_receiving(), np.empty((7, GROUP * LANES), number)
             velocities, bulk = Gathered(room[0], room[1], room[2]), Gathered(room[3], room[4], room[5])
             energies = room[6]
             block = next_part(shares, thread)
             while block >= 0:
-                sums = no_sums()
+                sums = no_sums(place_at(rows, np.uint64(0))[0])
                 begin, end = points_of_block(block, reports.shape[0], count)
                 for start in range(begin, end, GROUP):
                     first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
-                    for p in range(first, last, LANES):
+                    for p in range(first, last, at_once):
                         put_receiving(rows, p, p - first, nodes_y, ghosts, origin, inverse_size, receiving)
                     gather_velocities(last - first, nodes, nodes_y, receiving, velocities)
-                    updated_gradients(rows, first, last, cell_size, memory, receiving, velocities, energies)
+                    updated_gradients(rows, first, last, at_once, cell_size, memory, receiving, velocities, energies)
                     if ties:
                         gather_bulk(last - first, nodes, nodes_y, receiving, bulk)
-                        updated_surroundings(rows, first, last, bulk)
-                    sums = moved(rows, first, last, dt, memory, velocities, energies, sums)
+                        updated_surroundings(rows, first, last, at_once, bulk)
+                    sums = moved(
+                        rows, first, last, at_once, dt, memory, velocities, energies, sums, place_at, put_place
+                    )
                     if spreads:
-                        spread(rows, first, last, cell_size, dt, receiving, bulk)
+                        spread(rows, first, last, at_once, cell_size, dt, receiving, bulk, place_at, put_place)
                 report(reports, block, point_mass, sums)
                 block = next_part(shares, thread)
 

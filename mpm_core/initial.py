@@ -6,7 +6,8 @@ from numpy.typing import NDArray
 from materials import InputError, SymmetricTensor
 from materials.law import Law
 from mpm_core.body import POINTS_AT_ONCE, Body
-from mpm_core.columns import DENSITY, FIRST_STATE, SXX, SYY, SZZ, VX, VY, X, Y, allocate
+from mpm_core.columns import DENSITY, FIRST_STATE, RESTS, SXX, SYY, SZZ, VX, VY, allocate
+from mpm_core.places import put_places
 from mpm_core.scene import BodySection, InitialStressSection, Scene
 from mpm_core.shapes import lattice
 
@@ -62,9 +63,11 @@ def _build(
 ) -> Body:
     law = scene.law(section.material)
     parameters = scene.parameters(section.material)
-    storage = allocate(FIRST_STATE + len(law.state._fields) + keeps_shear_strain, len(positions))
+    rests = len(RESTS) if scene.precision == "single" else 0
+    columns = FIRST_STATE + len(law.state._fields) + keeps_shear_strain + rests
+    storage = allocate(columns, len(positions), scene.precision)
     points = storage[:, : len(positions)]
-    points[X], points[Y] = positions.T
+    put_places(points, positions.T)
     points[VX], points[VY] = section.velocity
     points[DENSITY] = section.density
     spacing = scene.grid.cell_size / section.points_per_cell**0.5

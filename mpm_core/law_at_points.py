@@ -1,13 +1,19 @@
-"""A law at the points: its state in their rows, its update, its short way for small steps, and its sound speed."""
+"""A law at the points: its state in their rows, its update, its short way for small steps, and its sound speed.
+
+What is stored for a point is turned into numbers of the kind that the law computes with.
+"""
 
 from collections.abc import Callable
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw, named
+from materials.precision import PRECISIONS
+from materials.single_precision import adaptable, in_single
 from materials.tensor import SymmetricTensor, added, isotropic
 from mpm_core.columns import DENSITY, FIRST_STATE, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ, VX, VY
 from mpm_core.side_by_side import side_by_side
@@ -32,12 +38,14 @@ def ordered_bits(value):  # type: ignore[no-untyped-def]
     return np.float64(value).view(np.int64)
 
 
-def make_state_access(state_class: type[Any], mark: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
+def make_state_access(
+    state_class: type[Any], mark: str, precision: str = "double"
+) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """Functions that load a law's state of one point from its rows, and store it."""
-    zeros = (0.0,) * len(state_class._fields)
+    zeros = (PRECISIONS[precision](0.0),) * len(state_class._fields)
     load_values, store_values = _load_none, _store_none
     for k in range(len(zeros)):
-        load_values, store_values = _with_variable(k, load_values, store_values, mark)
+        load_values, store_values = _with_variable(k, load_values, store_values, mark, precision)
 
     @register_jitable
     @named(mark)
@@ -58,15 +66,19 @@ def _store_none(rows, p, state):  # type: ignore[no-untyped-def]
 
 
 def _with_variable(
-    k: int, load_others: Callable[..., Any], store_others: Callable[..., Any], mark: str
+    k: int,
+    load_others: Callable[..., Any],
+    store_others: Callable[..., Any],
+    mark: str,
+    precision: str,
 ) -> tuple[Callable[..., Any], Callable[..., Any]]:
     """Access to one state variable more. Its row is fixed when the functions are made, as the compiler wants it."""
-    row = FIRST_STATE + k
+    row, number = FIRST_STATE + k, PRECISIONS[precision]
 
     @register_jitable
     @named(f"{mark}_{k}")
     def load(rows, p, values):  # type: ignore[no-untyped-def]
-        return replaced(load_others(rows, p, values), k, rows[row][p])
+        return replaced(load_others(rows, p, values), k, number(rows[row][p]))
 
     @register_jitable
     @named(f"{mark}_{k}")
@@ -95,9 +107,42 @@ def make_apply_law(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
     return apply_law
 
 
-@register_jitable(forceinline=True)
-def _stress_at(rows, p):  # type: ignore[no-untyped-def]
-    return SymmetricTensor(rows[SXX][p], rows[SYY][p], rows[SZZ][p], rows[SXY][p], 0.0, 0.0)
+class PointAccess(NamedTuple):
+    """What compiled code reads of a point, as numbers of one kind.
+
+    stress       (rows, p) -> the stress [Pa]
+    strain_rate  (rows, p, tie, dt) -> that of the motion, less a compressive strain [1] over the step [1/s]
+    """
+
+    stress: Callable[..., Any]
+    strain_rate: Callable[..., Any]
+
+
+@cache
+def point_access(precision: str) -> PointAccess:
+    """The access for a law that computes in a precision."""
+    number = PRECISIONS[precision]
+    nothing = number(0.0)
+
+    @register_jitable(forceinline=True)
+    @named(precision)
+    def stress_at(rows, p):  # type: ignore[no-untyped-def]
+        xx, yy, zz, xy = number(rows[SXX][p]), number(rows[SYY][p]), number(rows[SZZ][p]), number(rows[SXY][p])
+        return SymmetricTensor(xx, yy, zz, xy, nothing, nothing)
+
+    @adaptable
+    @named(precision)
+    def strain_rate_at(rows, p, tie, dt):  # type: ignore[no-untyped-def]
+        shear = 0.5 * (number(rows[LXY][p]) + number(rows[LYX][p]))
+        motion = SymmetricTensor(number(rows[LXX][p]), number(rows[LYY][p]), nothing, shear, nothing, nothing)
+        return added(motion, isotropic(number(tie) * (-1.0 / (3.0 * dt))))
+
+    return PointAccess(stress_at, in_precision(strain_rate_at, precision))
+
+
+def in_precision(function: Callable[..., Any], precision: str) -> Callable[..., Any]:
+    """An adaptable function as it is, or its version in single precision."""
+    return in_single(function) if precision == "single" else function
 
 
 @register_jitable(forceinline=True)
@@ -105,44 +150,42 @@ def _put_stress(rows, p, stress):  # type: ignore[no-untyped-def]
     rows[SXX][p], rows[SYY][p], rows[SZZ][p], rows[SXY][p] = stress.xx, stress.yy, stress.zz, stress.xy
 
 
-@register_jitable(forceinline=True)
-def _strain_rate_at(rows, p, tie, dt):  # type: ignore[no-untyped-def]
-    """That of the motion, less a compressive strain [1] over the step."""
-    shear = 0.5 * (rows[LXY][p] + rows[LYX][p])
-    motion = SymmetricTensor(rows[LXX][p], rows[LYY][p], 0.0, shear, 0.0, 0.0)
-    return added(motion, isotropic(tie * (-1.0 / (3.0 * dt))))
-
-
 def _make_update(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
-    law_update, parameter_class = law.update, law.parameters
-    load, store = make_state_access(law.state, mark)
+    law_update, parameter_class, number = law.update, law.parameters, PRECISIONS[law.precision]
+    (stress_at, strain_rate_at), (load, store) = (
+        point_access(law.precision),
+        make_state_access(law.state, mark, law.precision),
+    )
 
     @register_jitable(forceinline=True)
     @named(mark)
     def update_one(p, rows, first, ties, law_parameters, dt):  # type: ignore[no-untyped-def]
-        stress, strain_rate = _stress_at(rows, p), _strain_rate_at(rows, p, ties[p - first], dt)
-        stress, state = law_update(stress, strain_rate, rows[DENSITY][p], load(rows, p), law_parameters, dt)
+        stress, strain_rate = stress_at(rows, p), strain_rate_at(rows, p, ties[p - first], dt)
+        stress, state = law_update(stress, strain_rate, number(rows[DENSITY][p]), load(rows, p), law_parameters, dt)
         _put_stress(rows, p, stress)
         store(rows, p, state)
 
     @register_jitable
     @named(mark)
     def update(rows, first, last, ties, parameters, dt):  # type: ignore[no-untyped-def]
-        side_by_side(first, last, update_one, (rows, first, ties, parameter_class(*parameters), dt))
+        side_by_side(first, last, update_one, (rows, first, ties, parameter_class(*parameters), number(dt)))
 
     return update
 
 
 def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: str) -> Callable[..., Any]:
     """Without a branch but for what is stored, so that the compiler takes several points at once."""
-    parameter_class = law.parameters
-    load, store = make_state_access(law.state, mark)
+    parameter_class, number = law.parameters, PRECISIONS[law.precision]
+    (stress_at, strain_rate_at), (load, store) = (
+        point_access(law.precision),
+        make_state_access(law.state, mark, law.precision),
+    )
 
     @register_jitable(forceinline=True)
     @named(mark)
     def take_one(p, rows, first, ties, law_parameters, dt, pending):  # type: ignore[no-untyped-def]
-        stress, strain_rate = _stress_at(rows, p), _strain_rate_at(rows, p, ties[p - first], dt)
-        state, density = load(rows, p), rows[DENSITY][p]
+        stress, strain_rate = stress_at(rows, p), strain_rate_at(rows, p, ties[p - first], dt)
+        state, density = load(rows, p), number(rows[DENSITY][p])
         stress, state, succeeded = small_step(stress, strain_rate, density, state, law_parameters, dt)
         pending[p - first] = not succeeded
         if succeeded:
@@ -152,7 +195,8 @@ def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: s
     @register_jitable
     @named(mark)
     def take_small_steps(rows, first, last, ties, parameters, dt, pending):  # type: ignore[no-untyped-def]
-        side_by_side(first, last, take_one, (rows, first, ties, parameter_class(*parameters), dt, pending))
+        arguments = rows, first, ties, parameter_class(*parameters), number(dt), pending
+        side_by_side(first, last, take_one, arguments)
 
     return take_small_steps
 
@@ -163,37 +207,38 @@ def make_largest_signal_speed(law: PointwiseLaw, mark: str) -> Callable[..., Any
     Of single points: with largest sound speed and largest speed of a group apart, the step would depend on the order of
     the points, and a turned scene would not turn out the same.
     """
-    sound_speed, parameter_class = law.sound_speed, law.parameters
-    load, _ = make_state_access(law.state, mark)
+    sound_speed, parameter_class, number = law.sound_speed, law.parameters, PRECISIONS[law.precision]
+    (stress_at, _), (load, _) = point_access(law.precision), make_state_access(law.state, mark, law.precision)
 
-    @register_jitable
+    @adaptable
     @named(mark)
     def largest_signal_speed(rows, first, last, parameters):  # type: ignore[no-untyped-def]
         vx, vy = rows[VX], rows[VY]
         density, law_parameters = rows[DENSITY], parameter_class(*parameters)
         fastest = np.int64(0)
         for p in range(first, last):
-            stress = _stress_at(rows, p)
-            sound = sound_speed(stress, density[p], load(rows, p), law_parameters)
+            stress = stress_at(rows, p)
+            sound = sound_speed(stress, number(density[p]), load(rows, p), law_parameters)
             not_finite = 0.0 * (stress.xx + stress.yy + stress.zz + stress.xy)
             speed = np.sqrt(vx[p] * vx[p] + vy[p] * vy[p])
             fastest = max(fastest, ordered_bits(speed + sound + not_finite))
         return fastest
 
-    return largest_signal_speed
+    return in_precision(largest_signal_speed, law.precision)
 
 
 def make_find_stiffness(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
     """The stiffness rho c^2 of some points [Pa]."""
-    sound_speed, parameter_class = law.sound_speed, law.parameters
-    load, _ = make_state_access(law.state, mark)
+    sound_speed, parameter_class, number = law.sound_speed, law.parameters, PRECISIONS[law.precision]
+    (stress_at, _), (load, _) = point_access(law.precision), make_state_access(law.state, mark, law.precision)
 
     @register_jitable
     @named(mark)
     def find_stiffness(rows, first, last, parameters, stiffness):  # type: ignore[no-untyped-def]
-        density, law_parameters = rows[DENSITY], parameter_class(*parameters)
+        law_parameters = parameter_class(*parameters)
         for p in range(first, last):
-            sound = sound_speed(_stress_at(rows, p), density[p], load(rows, p), law_parameters)
-            stiffness[p - first] = density[p] * sound * sound
+            density = number(rows[DENSITY][p])
+            sound = sound_speed(stress_at(rows, p), density, load(rows, p), law_parameters)
+            stiffness[p - first] = density * sound * sound
 
     return find_stiffness

@@ -16,7 +16,8 @@ from mpm_core.grid import (
     VOLUME_PRESSURE,
     Grid,
 )
-from mpm_core.quads import halves_joined, halves_swapped, put_quad, quad_at
+from mpm_core.lane_arithmetic import halves_joined, halves_swapped
+from mpm_core.lanes import put, quad_at
 from mpm_core.reach import Reach
 from mpm_core.sources import CORE_MARK
 from mpm_core.volumes import crowding_of
@@ -57,7 +58,7 @@ def _update(nodes, nodes_y, reach, gravity_x, gravity_y, dt, ties, rooms_x, room
                 old_and_push = quad_at(nodes, node) * (1.0 / mass)
                 push_and_old = halves_swapped(old_and_push)
                 new = old_and_push + dt * push_and_old + fall
-                put_quad(nodes, node, halves_joined(new, push_and_old))
+                put(nodes, node, halves_joined(new, push_and_old))
                 if ties:
                     _average(nodes, node, mass, cell * rooms_x[i] * rooms_y[j])
 

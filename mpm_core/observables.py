@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mpm_core.body import Body
-from mpm_core.columns import X, Y
 
 # The middle share of the mass between the fronts: single points that roll ahead do not count.
 MASS_BETWEEN_FRONTS = 0.98
@@ -32,8 +31,7 @@ class PileShape:
 
 def pile_shape(bodies: Sequence[Body], floor: float, cell_size: float) -> PileShape:
     """Measure the shape of all bodies together."""
-    x = np.concatenate([body.points[X] for body in bodies])
-    y = np.concatenate([body.points[Y] for body in bodies])
+    x, y = np.concatenate([body.places for body in bodies], axis=1)
     mass = np.concatenate([np.full(body.count, body.point_mass) for body in bodies])
     beyond = 0.5 * (1.0 - MASS_BETWEEN_FRONTS) * mass.sum()
     front_left = _level(x, mass, beyond)

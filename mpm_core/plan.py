@@ -95,13 +95,19 @@ def _steps(scene: Scene, signal_speed: float, stops: int) -> int:
 def _savings(simulation: Simulation) -> list[str]:
     nodes = simulation.grid.shape[0] * simulation.grid.shape[1]
     found = [f"grid: {1.0 - simulation.reach.nodes / nodes:.0%} of the nodes are out of reach at the start"]
-    if simulation.grid.precision == "single":
-        found.append("single precision: half of the memory for the nodes in reach")
+    if simulation.scene.precision == "single":
+        found += [f"single precision: {line}" for line in _in_single(simulation)]
     if "shear_strain" not in simulation.fields:
         found.append("shear strain: not accumulated, as no frame holds it")
     if simulation.scene.sleep.speed is not None:
         found.append(f"sleep: points slower than {simulation.scene.sleep.speed:g} m/s, not counted in the wall time")
     return found
+
+
+def _in_single(simulation: Simulation) -> list[str]:
+    doubles = sorted({body.law.name for body in simulation.bodies if not body.law.holds_in_single})
+    laws = [f"{', '.join(doubles)} computed in double, as it does not hold in single"] if doubles else []
+    return ["half of the memory for points and for nodes in reach", *laws]
 
 
 def _seconds_per_step(simulation: Simulation, dt: float) -> float:

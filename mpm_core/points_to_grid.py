@@ -25,16 +25,18 @@ from numba import njit, prange
 from numba.extending import register_jitable
 
 from materials.compilation import named
+from materials.precision import PRECISIONS
 from materials.tensor import THIRD
 from mpm_core.basis import Basis
 from mpm_core.columns import AXX, AXY, AYX, AYY, DENSITY, SXX, SXY, SYY, SZZ, VX, VY
-from mpm_core.grid import BULK, COMPONENTS, PRECISIONS
+from mpm_core.grid import COMPONENTS
+from mpm_core.lane_arithmetic import filled_like, scaled_sum
+from mpm_core.lanes import LANES_OF, put, put_transposed, several_at
 from mpm_core.parts import next_part, shares_of, threads_of
-from mpm_core.quads import LANES, filled, put_quad, quad_at, scaled_sum
-from mpm_core.rows import OF_EVERY_LAW, rows_of
+from mpm_core.places import place_access
 from mpm_core.scatter import make_scatter
 from mpm_core.sources import CORE_MARK
-from mpm_core.stencils import GROUP, make_find_stencils, put_transposed
+from mpm_core.stencils import GROUP, make_find_stencils
 
 
 class Bringing(NamedTuple):
@@ -44,43 +46,41 @@ class Bringing(NamedTuple):
     weights           w of each node, those of one node for the whole group side by side
     brought           the components of a node, those of each point side by side, before they are weighed: momentum and
                       force at the first node, mass, volume and volume times pressure
-    steps_x, steps_y  what is added to momentum and force from node to node along x and y
+    steps             what is added to momentum and force from node to node, along x and then along y, of each point
+                      side by side
     """
 
     starts: Any
     weights: Any
     brought: Any
-    steps_x: Any
-    steps_y: Any
+    steps: Any
 
 
 @register_jitable(forceinline=True)
 def put_amounts(rows, p, k, point_mass, cell_size, along_x, along_y, bringing):  # type: ignore[no-untyped-def]
-    """Store what the four points from p on bring, from point k of a group on."""
+    """Store what the points from p on bring, as many as are taken at once, from point k of a group on."""
     # to the first node
     x, y = 0.0 - along_x.place, 0.0 - along_y.place
     affine = point_mass * cell_size
-    volume = point_mass / quad_at(rows[DENSITY], p)
+    volume = point_mass / several_at(rows[DENSITY], p)
     scale = (-1.0 / cell_size) * volume
     scale_x, scale_y = scale * along_x.per_moment, scale * along_y.per_moment
-    sxx, syy, sxy = quad_at(rows[SXX], p), quad_at(rows[SYY], p), quad_at(rows[SXY], p)
-    px_x, py_x = affine * quad_at(rows[AXX], p), affine * quad_at(rows[AYX], p)
-    px_y, py_y = affine * quad_at(rows[AXY], p), affine * quad_at(rows[AYY], p)
+    sxx, syy, sxy = several_at(rows[SXX], p), several_at(rows[SYY], p), several_at(rows[SXY], p)
+    px_x, py_x = affine * several_at(rows[AXX], p), affine * several_at(rows[AYX], p)
+    px_y, py_y = affine * several_at(rows[AXY], p), affine * several_at(rows[AYY], p)
     fx_x, fy_x = scale_x * sxx, scale_x * sxy
     fx_y, fy_y = scale_y * sxy, scale_y * syy
-    px = scaled_sum(x, px_x, scaled_sum(y, px_y, point_mass * quad_at(rows[VX], p)))
-    py = scaled_sum(x, py_x, scaled_sum(y, py_y, point_mass * quad_at(rows[VY], p)))
+    px = scaled_sum(x, px_x, scaled_sum(y, px_y, point_mass * several_at(rows[VX], p)))
+    py = scaled_sum(x, py_x, scaled_sum(y, py_y, point_mass * several_at(rows[VY], p)))
     fx, fy = scaled_sum(x, fx_x, y * fx_y), scaled_sum(x, fy_x, y * fy_y)
-    pressure = (sxx + syy + quad_at(rows[SZZ], p)) * -THIRD
-    put_transposed(bringing.brought, COMPONENTS * k, COMPONENTS, px, py, fx, fy)
-    bulk = filled(point_mass), volume, volume * pressure, filled(0.0)
-    put_transposed(bringing.brought, COMPONENTS * k + BULK, COMPONENTS, *bulk)
-    put_transposed(bringing.steps_x, LANES * k, LANES, px_x, py_x, fx_x, fy_x)
-    put_transposed(bringing.steps_y, LANES * k, LANES, px_y, py_y, fx_y, fy_y)
+    pressure = (sxx + syy + several_at(rows[SZZ], p)) * -THIRD
+    bulk = filled_like(point_mass, volume), volume, volume * pressure, filled_like(0.0, volume)
+    put_transposed(bringing.brought, k, (px, py, fx, fy, *bulk))
+    put_transposed(bringing.steps, k, (px_x, py_x, fx_x, fy_x, px_y, py_y, fx_y, fy_y))
 
 
 def make_put_weights(basis: Basis) -> Callable[..., Any]:
-    """A function that stores the weights of four points, from point k of a group on."""
+    """A function that stores the weights of points, from point k of a group on."""
     width = basis.width
 
     @register_jitable(forceinline=True)
@@ -88,43 +88,39 @@ def make_put_weights(basis: Basis) -> Callable[..., Any]:
     def put_weights(weights, k, along_x, along_y):  # type: ignore[no-untyped-def]
         for a in range(width):
             for b in range(width):
-                put_quad(weights, (a * width + b) * GROUP + k, along_x.weights[a] * along_y.weights[b])
+                put(weights, (a * width + b) * GROUP + k, along_x.weights[a] * along_y.weights[b])
 
     return put_weights
 
 
 @cache
 def make_points_to_grid(basis: Basis, precision: str) -> Callable[..., Any]:
-    """Scatter mass, volume, pressure, momentum and internal force to the grid."""
-    find_stencils, put_weights, scatter = make_find_stencils(basis), make_put_weights(basis), make_scatter(basis)
-    nodes_of_stencil, number = basis.width**2, PRECISIONS[precision]
+    """Scatter mass, volume, pressure, momentum and internal force to the grid; the precision is that of both."""
+    put_weights, scatter = make_put_weights(basis), make_scatter(basis)
+    find_stencils, rows_of_points = make_find_stencils(basis, precision), place_access(precision).rows
+    nodes_of_stencil, number, at_once = basis.width**2, PRECISIONS[precision], LANES_OF[precision]
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{basis.name}_{precision}_{CORE_MARK}")
     def points_to_grid(  # type: ignore[no-untyped-def]
         storage, point_mass, stripe_starts, threads, nodes, nodes_y, ghosts, origin, cell_size
     ):
-        rows, inverse_size = rows_of(storage, OF_EVERY_LAW), 1.0 / cell_size
+        rows, inverse_size = rows_of_points(storage), 1.0 / cell_size
         for parity in range(2):
             shares = shares_of((len(stripe_starts) - parity) // 2, threads)
             for thread in prange(threads_of(shares)):
-                steps = np.empty((2, GROUP * LANES), number)
-                bringing = Bringing(
-                    np.empty(GROUP),
-                    np.empty(nodes_of_stencil * GROUP, number),
-                    np.empty(GROUP * COMPONENTS, number),
-                    steps[0],
-                    steps[1],
-                )
+                per_point = np.empty((2, GROUP * COMPONENTS), number)
+                weights = np.empty(nodes_of_stencil * GROUP, number)
+                bringing = Bringing(np.empty(GROUP), weights, per_point[0], per_point[1])
                 part = next_part(shares, thread)
                 while part >= 0:
                     begin, end = stripe_starts[2 * part + parity], stripe_starts[2 * part + parity + 1]
                     for start in range(begin, end, GROUP):
                         first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
-                        for p in range(first, last, LANES):
+                        for p in range(first, last, at_once):
                             k = p - first
                             first_node, along_x, along_y = find_stencils(rows, p, nodes_y, ghosts, origin, inverse_size)
-                            put_quad(bringing.starts, k, first_node)
+                            put(bringing.starts, k, first_node)
                             put_weights(bringing.weights, k, along_x, along_y)
                             put_amounts(rows, p, k, point_mass, cell_size, along_x, along_y, bringing)
                         scatter(last - first, nodes, nodes_y, bringing)

@@ -13,10 +13,16 @@ from numba.extending import register_jitable
 from materials.compilation import named
 from mpm_core.basis import Basis
 from mpm_core.grid import COMPONENTS
-from mpm_core.octs import half_oct_at, oct_at, oct_sum, put_oct, scaled_oct_sum
-from mpm_core.quads import LANES
+from mpm_core.lane_arithmetic import scaled_sum
+from mpm_core.lanes import LANES, half_oct_at, oct_at, put
 from mpm_core.sources import CORE_MARK
 from mpm_core.stencils import GROUP
+
+
+@register_jitable(forceinline=True)
+def steps_at(steps, k):  # type: ignore[no-untyped-def]
+    """What a point adds from node to node along x and y, to all components of which half do not change."""
+    return half_oct_at(steps, COMPONENTS * k), half_oct_at(steps, COMPONENTS * k + np.uint64(LANES))
 
 
 def make_scatter_one(basis: Basis) -> Callable[..., Any]:
@@ -26,17 +32,17 @@ def make_scatter_one(basis: Basis) -> Callable[..., Any]:
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{CORE_MARK}")
     def scatter_one(row, row_length, k, nodes, bringing):  # type: ignore[no-untyped-def]
-        _, weights, brought, steps_x, steps_y = bringing
+        _, weights, brought, steps = bringing
         at_row = oct_at(brought, COMPONENTS * k)
-        step_x, step_y = half_oct_at(steps_x, LANES * k), half_oct_at(steps_y, LANES * k)
+        step_x, step_y = steps_at(steps, k)
         for a in range(width):
             at_node = at_row
             for b in range(width):
                 node = row + np.uint64(b * COMPONENTS)
                 weight = weights[np.uint64((a * width + b) * GROUP) + k]
-                put_oct(nodes, node, scaled_oct_sum(weight, at_node, oct_at(nodes, node)))
-                at_node = oct_sum(at_node, step_y)
-            at_row = oct_sum(at_row, step_x)
+                put(nodes, node, scaled_sum(weight, at_node, oct_at(nodes, node)))
+                at_node = at_node + step_y
+            at_row = at_row + step_x
             row += row_length
 
     return scatter_one
@@ -49,19 +55,19 @@ def make_scatter_two(basis: Basis) -> Callable[..., Any]:
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{CORE_MARK}")
     def scatter_two(row, row_length, k, nodes, bringing):  # type: ignore[no-untyped-def]
-        _, weights, brought, steps_x, steps_y = bringing
+        _, weights, brought, steps = bringing
         m = k + np.uint64(1)
         at_row, at_row_2 = oct_at(brought, COMPONENTS * k), oct_at(brought, COMPONENTS * m)
-        step_x, step_y = half_oct_at(steps_x, LANES * k), half_oct_at(steps_y, LANES * k)
-        step_x_2, step_y_2 = half_oct_at(steps_x, LANES * m), half_oct_at(steps_y, LANES * m)
+        step_x, step_y = steps_at(steps, k)
+        step_x_2, step_y_2 = steps_at(steps, m)
         for a in range(width):
             at_node, at_node_2 = at_row, at_row_2
             for b in range(width):
                 node, first = row + np.uint64(b * COMPONENTS), np.uint64((a * width + b) * GROUP)
-                with_one = scaled_oct_sum(weights[first + k], at_node, oct_at(nodes, node))
-                put_oct(nodes, node, scaled_oct_sum(weights[first + m], at_node_2, with_one))
-                at_node, at_node_2 = oct_sum(at_node, step_y), oct_sum(at_node_2, step_y_2)
-            at_row, at_row_2 = oct_sum(at_row, step_x), oct_sum(at_row_2, step_x_2)
+                with_one = scaled_sum(weights[first + k], at_node, oct_at(nodes, node))
+                put(nodes, node, scaled_sum(weights[first + m], at_node_2, with_one))
+                at_node, at_node_2 = at_node + step_y, at_node_2 + step_y_2
+            at_row, at_row_2 = at_row + step_x, at_row_2 + step_x_2
             row += row_length
 
     return scatter_two

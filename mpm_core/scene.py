@@ -30,9 +30,6 @@ class GridSection(Section):
     cell_size: float = Field(gt=0, description="edge of a square cell [m]; may be left to `accuracy`")
     lower: Corner = Field(default=(0.0, 0.0), description="lower left corner of the domain [m]")
     upper: Corner = Field(description="upper right corner of the domain [m]; a whole number of cells from `lower`")
-    precision: Literal["double", "single"] = Field(
-        default="double", description="of what is on the nodes; points are kept in double precision"
-    )
 
     @property
     def cells(self) -> tuple[int, int]:
@@ -207,6 +204,10 @@ class Scene(Section):
         default=None,
         description="sets grid.cell_size, time.safety and body.points_per_cell where the scene does not, to what kept "
         "runout, height and centre of mass of column collapses within this of finer grids with 16 points per cell",
+    )
+    precision: Literal["double", "single"] = Field(
+        default="double",
+        description="of nodes and points, and of the arithmetic of laws that hold in it; places are exact in both",
     )
     gravity: Corner = Field(default=(0.0, -9.81), description="gravity vector [m/s2]")
     grid: GridSection

@@ -50,7 +50,7 @@ def _told(module: Any) -> Any:
     return node
 
 
-# As in `quads`, closures hold what hands on, not the intrinsic.
+# As in `lanes`, closures hold what hands on, not the intrinsic.
 
 
 @register_jitable(forceinline=True)

@@ -98,12 +98,12 @@ class Simulation:
         self.basis = BASES[scene.transfer.basis]
         self.periodic_axes = _periodic_axes(scene)
         size = (scene.grid.lower, scene.grid.cells, scene.grid.cell_size)
-        self.grid = Grid(*size, self.periodic_axes, self.basis.wall_room, scene.grid.precision)
+        self.grid = Grid(*size, self.periodic_axes, self.basis.wall_room, scene.precision)
         self.fields = chosen_fields(scene.output.fields, [scene.law(section.material) for section in scene.body])
         self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
         started = time.perf_counter()
         for body in self.bodies:
-            body.choose_kernels(self.basis, scene.grid.precision, scene.transfer.spreading)
+            body.choose_kernels(self.basis, scene.transfer.spreading)
         initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
         self.walls = _walls(scene)
@@ -277,7 +277,7 @@ class Simulation:
 
     def _fail_outside(self, axis: int) -> None:
         for body in self.bodies:
-            coordinate = body.points[(X, Y)[axis]]
+            coordinate = body.places[axis]
             outside = (coordinate < self.grid.lower[axis]) | (coordinate > self.grid.upper[axis])
             if outside.any():
                 self._fail(body, int(np.argmax(outside)), "the point has left the domain")

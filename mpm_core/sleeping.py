@@ -29,8 +29,8 @@ from mpm_core.basis import Basis, first_node
 from mpm_core.body import Body
 from mpm_core.columns import X, Y
 from mpm_core.grid import COMPONENTS, MASS, NEW_VX, NEW_VY, Grid
+from mpm_core.lanes import MOST_AT_ONCE
 from mpm_core.momentum import clear
-from mpm_core.quads import LANES
 from mpm_core.reach import Reach, nothing_in_reach, reach_of
 from mpm_core.scene import SleepSection
 from mpm_core.sources import CORE_MARK
@@ -115,7 +115,7 @@ class Sleep:
         for body in self.bodies:
             slept = np.ones(body.count - body.awake, np.bool_)
             sleeps = np.concatenate([~self._touched(body.points_awake, stirred), slept])
-            if np.count_nonzero(sleeps) >= body.count - body.awake + LANES:
+            if np.count_nonzero(sleeps) >= body.count - body.awake + MOST_AT_ONCE:
                 body.divide(sleeps)
                 fell = True
         self.open_window(time)

@@ -107,7 +107,7 @@ def reorder(storage: NDArray[np.float64], ids: NDArray[np.int32], first: int, or
 @named(CORE_MARK)
 def _reorder(storage, first, order):  # type: ignore[no-untyped-def]
     for column in prange(storage.shape[0]):
-        row, found = storage[column, first : first + len(order)], np.empty(len(order))
+        row, found = storage[column, first : first + len(order)], np.empty(len(order), storage.dtype)
         for p in range(len(order)):
             # unsigned, so that nothing is done for numbers that count from the end
             found[p] = row[np.uint64(order[p])]

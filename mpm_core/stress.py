@@ -16,6 +16,8 @@ from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw, named
 from materials.elementary import fused
+from materials.precision import PRECISIONS
+from materials.single_precision import adaptable
 from materials.tensor import THIRD, SymmetricTensor, shear_strain_rate, trace
 from mpm_core.blocks import points_of_block
 from mpm_core.columns import (
@@ -32,9 +34,16 @@ from mpm_core.columns import (
     SYY,
     SZZ,
 )
-from mpm_core.law_at_points import make_apply_law, make_find_stiffness, make_largest_signal_speed, ordered_bits
+from mpm_core.lane_arithmetic import filled, first_lanes, total
+from mpm_core.lanes import LANES, quad_at
+from mpm_core.law_at_points import (
+    in_precision,
+    make_apply_law,
+    make_find_stiffness,
+    make_largest_signal_speed,
+    ordered_bits,
+)
 from mpm_core.parts import next_part, shares_of, threads_of
-from mpm_core.quads import LANES, filled, first_lanes, quad_at, total
 from mpm_core.rows import rows_of
 from mpm_core.sources import CORE_MARK
 from mpm_core.volumes import SQUEEZE, closing_strain, evening_share, evening_strain
@@ -47,7 +56,7 @@ MAX_SIGNAL_SPEED, INTERNAL_WORK, MAX_INCREMENT = range(3)
 REPORTS = 3
 
 
-@register_jitable
+@adaptable
 def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
     """In-plane stress components after a rotation by `angle`.
 
@@ -64,7 +73,7 @@ def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
     return mean + turned, mean - turned, fused(half, sine, sxy * cosine)
 
 
-@register_jitable
+@adaptable
 def tie_volumes(rows, first, last, duration, exchange, stiffness, ties):  # type: ignore[no-untyped-def]
     """The compressive strain that ties the volumes of points to one another for a time [s], into `ties`."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
@@ -81,7 +90,7 @@ def tie_volumes(rows, first, last, duration, exchange, stiffness, ties):  # type
         ties[p - first] = (evening if has_contact else closing) + SQUEEZE * duration * shear_rate * crowding[p]
 
 
-@register_jitable
+@adaptable
 def bring_forward(rows, first, last, dt, ties, room):  # type: ignore[no-untyped-def]
     """Rotate the stress and bring the density to the end of the step; returns the largest volumetric increment.
 
@@ -104,7 +113,7 @@ def bring_forward(rows, first, last, dt, ties, room):  # type: ignore[no-untyped
         works[p - first] = power * (inverse * grown * shrunk)
         volumes[p - first] = inverse * grown * grown
         sxx[p], syy[p], sxy[p] = xx, yy, xy
-        density[p] *= density[p] * shrunk * shrunk * inverse
+        density[p] = fused(-2.0 * half_increment, density[p] * (density[p] * shrunk * inverse), density[p])
         largest = max(largest, ordered_bits(abs(2.0 * half_increment)))
     return largest
 
@@ -114,7 +123,7 @@ def make_accumulate_shear_strain(row: int | None, mark: str) -> Callable[..., An
     if row is None:
         return no_shear_strain
 
-    @register_jitable
+    @adaptable
     @named(mark)
     def accumulate_shear_strain(rows, first, last, dt):  # type: ignore[no-untyped-def]
         lxx, lxy, lyx, lyy, shear_strain = rows[LXX], rows[LXY], rows[LYX], rows[LYY], rows[row]
@@ -125,7 +134,7 @@ def make_accumulate_shear_strain(row: int | None, mark: str) -> Callable[..., An
     return accumulate_shear_strain
 
 
-@register_jitable
+@adaptable
 def no_shear_strain(rows, first, last, dt):  # type: ignore[no-untyped-def]
     """Do nothing."""
 
@@ -150,20 +159,22 @@ def work_done(rows, first, last, room):  # type: ignore[no-untyped-def]
 
 
 @cache
-def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..., Any]:
-    """The stress pass of a law; it takes the law's parameters as a plain tuple.
+def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str) -> Callable[..., Any]:
+    """The stress pass of a law; it takes the law's parameters as a plain tuple. The precision is that of the points.
 
     It ties the volumes of the points for a time `tied` [s], zero for not in this step; `exchange` is that time over the
     time constant of the transfer. Reports per block of points: the largest signal speed c + |v| [m/s], the work of the
     stress on the strain [J/m], and the largest volumetric strain increment of the step. Where anything is not finite,
     the last one is NaN.
     """
-    mark = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}"
+    mark, number = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}_{precision}", PRECISIONS[precision]
     apply_law, find_stiffness = make_apply_law(law, mark), make_find_stiffness(law, mark)
     largest_signal_speed = make_largest_signal_speed(law, mark)
     after_state = FIRST_STATE + len(law.state._fields)
     all_rows = (0.0,) * (after_state + keeps_shear_strain)
-    accumulate_shear_strain = make_accumulate_shear_strain(after_state if keeps_shear_strain else None, mark)
+    shear_strain = make_accumulate_shear_strain(after_state if keeps_shear_strain else None, mark)
+    accumulate = in_precision(shear_strain, precision)
+    forward, tie = in_precision(bring_forward, precision), in_precision(tie_volumes, precision)
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(mark)
@@ -172,7 +183,7 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
     ):
         rows, shares = rows_of(storage, all_rows), shares_of(reports.shape[0], threads)
         for thread in prange(threads_of(shares)):
-            arrays = np.zeros((3, GROUP))
+            arrays, step = np.zeros((3, GROUP), number), number(dt)
             ties, stiffness, room = arrays[0], arrays[1], (arrays[1], arrays[2])
             block = next_part(shares, thread)
             while block >= 0:
@@ -182,9 +193,9 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool) -> Callable[..
                     first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
                     if tied > 0.0:
                         find_stiffness(rows, first, last, parameters, stiffness)
-                        tie_volumes(rows, first, last, tied, exchange, stiffness, ties)
-                    accumulate_shear_strain(rows, first, last, dt)
-                    increment = bring_forward(rows, first, last, dt, ties, room)
+                        tie(rows, first, last, number(tied), number(exchange), stiffness, ties)
+                    accumulate(rows, first, last, step)
+                    increment = forward(rows, first, last, step, ties, room)
                     apply_law(rows, first, last, ties, parameters, dt)
                     speed = largest_signal_speed(rows, first, last, parameters)
                     work += work_done(rows, first, last, room)

@@ -28,6 +28,8 @@ nothing to material that carries tension, where stress belongs to the single poi
 
 from numba.extending import register_jitable
 
+from materials.single_precision import adaptable
+
 # The shear rate [1/s] below which material counts as at rest.
 QUIET_RATE = 0.1
 
@@ -54,14 +56,14 @@ def crowding_of(volume, room):  # type: ignore[no-untyped-def]
     return filling - 1.0 if filling > NEARLY_FULL else 0.0
 
 
-@register_jitable
+@adaptable
 def evening_share(shear_rate, exchange):  # type: ignore[no-untyped-def]
     """The share s of a difference that goes in a step; `exchange` is dt over the time constant of the transfer."""
     share = EVENING * exchange * shear_rate
     return share / (shear_rate + QUIET_RATE + share)
 
 
-@register_jitable
+@adaptable
 def evening_strain(pressure, mean_pressure, stiffness, share):  # type: ignore[no-untyped-def]
     """The compressive strain of a step towards the mean pressure; `stiffness` is rho c^2 [Pa] of the point."""
     if stiffness <= 0.0 or pressure <= 0.0 or mean_pressure <= 0.0:
@@ -70,7 +72,7 @@ def evening_strain(pressure, mean_pressure, stiffness, share):  # type: ignore[n
     return min(max(strain, -LARGEST_EVENING), LARGEST_EVENING)
 
 
-@register_jitable
+@adaptable
 def closing_strain(density, mean_density, share):  # type: ignore[no-untyped-def]
     """The compressive strain of a step towards the density around, bounded by 2 for points that are far apart."""
     return share * 2.0 * max(0.0, mean_density - density) / (mean_density + density)

@@ -183,6 +183,7 @@ LAW = Law(
             lambda pressure, parameters: 1500.0 * math.exp(pressure / parameters.bulk_modulus),
         ),
     },
+    holds_in_single=True,
     hook_version=2,
 )
 

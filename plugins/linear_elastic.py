@@ -89,6 +89,7 @@ LAW = Law(
             density=lambda pressure, parameters: 1000.0,
         )
     },
+    holds_in_single=True,
     hook_version=2,
 )
 

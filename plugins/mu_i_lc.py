@@ -173,6 +173,7 @@ LAW = Law(
             density_of_table_1,
         ),
     },
+    holds_in_single=True,
     hook_version=2,
 )
 

@@ -97,6 +97,7 @@ LAW = Law(
     sound_speed=sound_speed,
     stored_energy=stored_energy,
     viscosity=viscosity,
+    holds_in_single=True,
     hook_version=2,
     parameter_sets={
         "glycerol": ParameterSet(

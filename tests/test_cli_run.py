@@ -194,7 +194,7 @@ def test_the_installed_command_gives_one_line_and_exit_code_2(tmp_path):
 
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_a_second_process_compiles_nothing(tmp_path, monkeypatch, precision):
-    path = write_scene(tmp_path / "column.toml", COLUMN, {**QUICK, "grid.precision": precision})
+    path = write_scene(tmp_path / "column.toml", COLUMN, {**QUICK, "precision": precision})
     monkeypatch.setenv("NUMBA_DEBUG_CACHE", "1")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
     command = [sys.executable, "-m", "grainlaw", "run", str(path), "--out"]

@@ -9,8 +9,8 @@ from mpm_core.observables import pile_shape
 
 
 def body(x, y, point_mass=2.0, density=1000.0):
-    points = np.array([x, y], dtype=float)
-    return SimpleNamespace(points=points, count=points.shape[1], point_mass=point_mass, initial_density=density)
+    places = np.array([x, y], dtype=float)
+    return SimpleNamespace(places=places, count=places.shape[1], point_mass=point_mass, initial_density=density)
 
 
 def evenly(count, width=1.0, height=0.5, **keywords):
@@ -59,7 +59,7 @@ def test_bodies_count_by_their_mass():
 def test_the_order_of_points_does_not_matter():
     order = np.random.default_rng(6).permutation(2000)
     ordered = evenly(2000)
-    shuffled = body(*ordered.points[:, order])
+    shuffled = body(*ordered.places[:, order])
     first, second = (pile_shape([one], 0.0, CELL) for one in (ordered, shuffled))
     assert first.runout == second.runout
     assert first.height == second.height

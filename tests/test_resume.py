@@ -81,9 +81,9 @@ def kill_in_the_middle(process, out, after):
     assert process.wait() == -signal.SIGKILL
 
 
-@pytest.mark.parametrize("output", ["vtu", "both"])
-def test_a_killed_run_goes_on_to_the_same_bits(tmp_path, monkeypatch, capsys, output):
-    scene_file = write_scene(tmp_path / "scene.toml", with_output(output, FINE))
+@pytest.mark.parametrize(("output", "precision"), [("vtu", "double"), ("vtu", "single"), ("both", "double")])
+def test_a_killed_run_goes_on_to_the_same_bits(tmp_path, monkeypatch, capsys, output, precision):
+    scene_file = write_scene(tmp_path / "scene.toml", with_output(output, {**FINE, "precision": precision}))
     whole, killed = tmp_path / "whole", tmp_path / "killed"
     run(Scene.load(scene_file), whole)
     kill_in_the_middle(start(scene_file, killed), killed, after=0.15)

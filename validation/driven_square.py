@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from materials.rheology import shear_modulus
 from mpm_core.body import Body
-from mpm_core.columns import AXX, AYY, LXX, LYY, SXX, SYY, VX, VY, X, Y
+from mpm_core.columns import AXX, AYY, LXX, LYY, SXX, SYY, VX, VY
 from mpm_core.simulation import Simulation
 from validation.scenes import advance, simulation_of
 
@@ -87,11 +87,16 @@ class DrivenSquare:
     """
 
     def __init__(
-        self, cells: int, points_per_cell: int, settings: dict[str, dict[str, Any]], force_factor: float = 1.0
+        self,
+        cells: int,
+        points_per_cell: int,
+        settings: dict[str, dict[str, Any]],
+        force_factor: float = 1.0,
+        precision: str = "double",
     ) -> None:
-        self.simulation = simulation_of(_scene(cells, points_per_cell, settings))
+        self.simulation = simulation_of({**_scene(cells, points_per_cell, settings), "precision": precision})
         self.body = self.simulation.bodies[0]
-        self.places = self.body.points[[X, Y]].copy()
+        self.places = self.body.places
         self.force_factor = force_factor
         points = self.body.points
         points[[VX, VY]] = velocity(self.places, 0.0)
@@ -110,7 +115,7 @@ class DrivenSquare:
 
     def _errors(self, present: Simulation) -> Errors:
         places, points = self.places[:, self.body.ids], self.body.points
-        off = points[[X, Y]] - places - displacement(places, present.time)
+        off = self.body.places - places - displacement(places, present.time)
         off_stress = points[[SXX, SYY]] - stress(places, present.time)
         return Errors(
             float(np.sqrt((off**2).sum(axis=0).mean())) / AMPLITUDE,

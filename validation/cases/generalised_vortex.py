@@ -114,7 +114,7 @@ def ring(cells: int, points_across_cell: int, angle: float) -> Simulation:
     points[[VX, VY]] = turn * np.array([-places[1], places[0]])
     mass = DENSITY * math.pi * (OUTER**2 - INNER**2) / count
     body = Body("ring", like.law, like.parameters, storage, count, mass, first_id=0)
-    body.choose_kernels(simulation.basis, simulation.grid.precision, spreads=False)
+    body.choose_kernels(simulation.basis, spreads=False)
     simulation.bodies = [body]
     simulation.measure_signals()
     simulation.held_nodes = nodes_where(simulation.grid, _is_outside)

@@ -36,9 +36,8 @@ class ExactSetting:
 
     @property
     def tables(self) -> dict[str, dict[str, Any]]:
-        """What the scene of the square is changed by."""
+        """What the scene's tables of the square are changed by."""
         return {
-            "grid": {"precision": self.precision},
             "time": {"safety": self.safety},
             "transfer": {"scheme": self.scheme, "basis": self.basis},
         }
@@ -52,7 +51,7 @@ def exact_settings() -> Iterator[ExactSetting]:
 
 def cost_and_error(setting: ExactSetting) -> tuple[float, float] | None:
     """Processor time [s] without that of the body force, and error of the place; None for a run that breaks down."""
-    square = DrivenSquare(setting.cells, setting.points_per_cell, setting.tables)
+    square = DrivenSquare(setting.cells, setting.points_per_cell, setting.tables, precision=setting.precision)
     in_force = 0.0
 
     def timed_force(body: Body, moment: float) -> Array:

@@ -56,7 +56,7 @@ class Setting:
         return {
             "body.0.shape": {"kind": "rectangle", "lower": lower, "upper": upper},
             "body.0.points_per_cell": self.points_per_cell,
-            "grid.precision": self.precision,
+            "precision": self.precision,
             "time.safety": self.safety,
             "transfer.scheme": self.scheme,
             "transfer.basis": self.basis,
