@@ -46,9 +46,16 @@ class Part(StrEnum):
     PLANS = "plans"
 
 
+class Precision(StrEnum):
+    """Of nodes and points."""
+
+    DOUBLE = "double"
+    SINGLE = "single"
+
+
 @dataclass(frozen=True)
 class Effort:
-    """How large and how long: cell size [m] and end [s] of the race, points of the other parts, rounds."""
+    """How large and how long: cell size [m] and end [s] of the race, points of the other parts, rounds; precision."""
 
     cell_size: float
     end: float
@@ -57,6 +64,7 @@ class Effort:
     pass_steps: int
     working_sets: tuple[int, ...]
     scenes: Mapping[str, Mapping[str, Any]]
+    precision: str = "double"
 
 
 FULL = Effort(
@@ -101,10 +109,14 @@ def main(
     end: Annotated[float | None, typer.Option("--end", help="End of the race with the yardstick [s].")] = None,
     cell_size: Annotated[float | None, typer.Option("--cell-size", help="Of the race and the passes [m].")] = None,
     material: Annotated[list[str] | None, typer.Option("--material", help=f"Of {', '.join(SCENES)}.")] = None,
+    precision: Annotated[
+        Precision, typer.Option("--precision", help="Of the library; the race runs in both.")
+    ] = Precision.DOUBLE,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the results.")] = Path("runs/bench"),
 ) -> None:
     """Time the library: pass by pass against the roofline, against the yardstick, over size, domain and memory."""
     chosen = QUICK if quick else FULL
+    chosen = replace(chosen, precision=precision.value)
     effort = replace(chosen, cell_size=cell_size or chosen.cell_size, end=end or chosen.end)
     materials = material or list(SCENES)
     record = Record()
@@ -121,7 +133,8 @@ def main(
 
 def _passes(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
     for material in materials:
-        found = pass_times(moving_column(material, effort.cell_size), effort.pass_steps, roofline)
+        column = moving_column(material, effort.cell_size, precision=effort.precision)
+        found = pass_times(column, effort.pass_steps, roofline)
         record.add("passes", found, pass_table(material, found))
 
 
@@ -134,7 +147,7 @@ def _yardstick(record: Record, materials: list[str], effort: Effort, roofline: R
 def _sizes(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
     for material in materials:
         cell_sizes = [cell_size_for(points) for points in effort.sizes]
-        found = cost_over_size(material, cell_sizes, _threads(), effort.rounds)
+        found = cost_over_size(material, cell_sizes, _threads(), effort.rounds, effort.precision)
         record.add("sizes", found, size_table(material, found))
 
 
@@ -143,18 +156,18 @@ def _two_cores(record: Record, materials: list[str], effort: Effort, roofline: R
         return
     cell_sizes = [effort.cell_size, *(cell_size_for(points) for points in effort.sizes[1:-1])]
     for material in materials:
-        found = [gain_of_two_cores(material, cell_size, 3 * effort.rounds) for cell_size in cell_sizes]
+        found = [gain_of_two_cores(material, size, 3 * effort.rounds, effort.precision) for size in cell_sizes]
         record.add("cores", found, two_cores_table(material, found))
 
 
 def _domain(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
-    found = cost_over_domain(materials[0], effort.cell_size, (1, 10), 3 * effort.rounds)
+    found = cost_over_domain(materials[0], effort.cell_size, (1, 10), 3 * effort.rounds, effort.precision)
     record.add("domain", found, domain_table(materials[0], found))
 
 
 def _memory(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
     largest, smallest = cell_size_for(effort.sizes[-1]), cell_size_for(effort.sizes[0])
-    found = {material: memory_per_point(material, largest, smallest) for material in materials}
+    found = {material: memory_per_point(material, largest, smallest, effort.precision) for material in materials}
     record.add("memory", found, memory_table(found))
 
 

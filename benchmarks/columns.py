@@ -20,13 +20,15 @@ def cell_size_for(points: float) -> float:
     return 1.0 / (20 * max(1, round(cells_per_metre / 20)))
 
 
-def moving_column(material: str, cell_size: float, threads: int = 1, domain_factor: int = 1) -> Simulation:
+def moving_column(
+    material: str, cell_size: float, threads: int = 1, domain_factor: int = 1, precision: str = "double"
+) -> Simulation:
     """The column with a velocity field that stretches and lowers it without change of volume.
 
     `domain_factor` enlarges the domain along both axes; the column stays where it is on the grid.
     """
     upper = [3.2 * domain_factor, 1.0 * domain_factor]
-    simulation = collapse(material, cell_size, {"grid.upper": upper})
+    simulation = collapse(material, cell_size, {"grid.upper": upper, "precision": precision})
     simulation.threads = threads
     body = simulation.bodies[0]
     body.points[VX] = SPREADING_RATE * (body.points[X] - body.points[X].mean())

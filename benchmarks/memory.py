@@ -19,24 +19,24 @@ class Memory:
     bytes_per_further_point: float
 
 
-def memory_per_point(material: str, cell_size: float, small_cell_size: float) -> Memory:
+def memory_per_point(material: str, cell_size: float, small_cell_size: float, precision: str) -> Memory:
     """Measured in processes of their own; the small column shows what the program takes without points."""
-    points, resident = _measured(material, cell_size)
-    few, little = _measured(material, small_cell_size)
+    points, resident = _measured(material, cell_size, precision)
+    few, little = _measured(material, small_cell_size, precision)
     return Memory(points, resident, resident / points, (resident - little) / (points - few))
 
 
-def _measured(material: str, cell_size: float) -> tuple[int, int]:
-    command = [sys.executable, "-m", "benchmarks.memory", material, str(cell_size)]
+def _measured(material: str, cell_size: float, precision: str) -> tuple[int, int]:
+    command = [sys.executable, "-m", "benchmarks.memory", material, str(cell_size), precision]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=Path(__file__).resolve().parents[1])
     points, resident = json.loads(done.stdout)
     return points, resident
 
 
-def _measure(material: str, cell_size: float) -> None:
+def _measure(material: str, cell_size: float, precision: str) -> None:
     from benchmarks.columns import make_steps, moving_column
 
-    column = moving_column(material, cell_size)
+    column = moving_column(material, cell_size, precision=precision)
     make_steps(column, STEPS)
     print(json.dumps([column.bodies[0].count, _greatest_resident()]))
 
@@ -49,4 +49,4 @@ def _greatest_resident() -> int:
 
 
 if __name__ == "__main__":
-    _measure(sys.argv[1], float(sys.argv[2]))
+    _measure(sys.argv[1], float(sys.argv[2]), sys.argv[3])

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 
 from benchmarks.columns import advance_to
 from benchmarks.timing import Duration, Spread, spread, timed
 from benchmarks.yardstick import Yardstick
+from materials.precision import PRECISIONS
 from mpm_core.simulation import Simulation
 from validation.collapses import collapse
 
@@ -50,8 +52,12 @@ class Result:
 
 
 def race(material: str, cell_size: float, end: float, threads: Sequence[int] = (1, 2)) -> list[Result]:
-    """Lead all contestants to `end` [s] in laps: first a short one, not counted, that compiles."""
-    contestants = [_library(material, cell_size, count) for count in threads]
+    """Lead all contestants to `end` [s] in laps: first a short one, not counted, that compiles.
+
+    The library runs in both precisions, the yardstick in double.
+    """
+    kinds = product(PRECISIONS, threads)
+    contestants = [_library(material, cell_size, precision, count) for precision, count in kinds]
     points = contestants[0].program.bodies[0].count  # type: ignore[union-attr]
     contestants.append(_yardstick(material, cell_size))
     for one in contestants:
@@ -62,10 +68,11 @@ def race(material: str, cell_size: float, end: float, threads: Sequence[int] = (
     return [_result(one, contestants[-1], points) for one in contestants]
 
 
-def _library(material: str, cell_size: float, threads: int) -> Contestant:
-    simulation = collapse(material, cell_size)
+def _library(material: str, cell_size: float, precision: str, threads: int) -> Contestant:
+    simulation = collapse(material, cell_size, {"precision": precision})
     simulation.threads = threads
-    return Contestant(f"library, {threads} thread(s)", simulation, lambda target: advance_to(simulation, target))
+    name = f"library, {precision}, {threads} thread(s)"
+    return Contestant(name, simulation, lambda target: advance_to(simulation, target))
 
 
 def _yardstick(material: str, cell_size: float) -> Contestant:

@@ -31,9 +31,11 @@ def steps_of_a_turn(points: int) -> int:
     return min(max(FEWEST_STEPS, round(POINT_STEPS_PER_TURN / points)), MOST_STEPS)
 
 
-def cost_over_size(material: str, cell_sizes: Sequence[float], threads: Sequence[int], rounds: int) -> list[Cost]:
+def cost_over_size(
+    material: str, cell_sizes: Sequence[float], threads: Sequence[int], rounds: int, precision: str
+) -> list[Cost]:
     """Columns of several cell sizes, all in each round."""
-    columns = {cell_size: moving_column(material, cell_size) for cell_size in cell_sizes}
+    columns = {cell_size: moving_column(material, cell_size, precision=precision) for cell_size in cell_sizes}
     for column in columns.values():
         make_steps(column, 3)
     turns = {(size, count): _Turn(column, count) for size, column in columns.items() for count in threads}
@@ -44,10 +46,12 @@ def cost_over_size(material: str, cell_sizes: Sequence[float], threads: Sequence
     ]
 
 
-def cost_over_domain(material: str, cell_size: float, times: Sequence[int], rounds: int) -> list[tuple[int, Cost]]:
+def cost_over_domain(
+    material: str, cell_size: float, times: Sequence[int], rounds: int, precision: str
+) -> list[tuple[int, Cost]]:
     """The same column in the paper's domain, and in ones so many times larger along both axes; (cells, cost)."""
     found = []
-    columns = {factor: moving_column(material, cell_size, domain_factor=factor) for factor in times}
+    columns = {factor: moving_column(material, cell_size, 1, factor, precision) for factor in times}
     for column in columns.values():
         make_steps(column, 3)
     turns = {factor: _Turn(column, 1) for factor, column in columns.items()}

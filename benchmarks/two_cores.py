@@ -30,9 +30,10 @@ class TwoCores:
     share: Spread
 
 
-def gain_of_two_cores(material: str, cell_size: float, rounds: int) -> TwoCores:
+def gain_of_two_cores(material: str, cell_size: float, rounds: int, precision: str) -> TwoCores:
     """Measure in rounds of three turns: one run alone, the same with two threads, and two runs at once."""
-    with _run(material, cell_size) as first, _run(material, cell_size) as second:
+    column = material, cell_size, precision
+    with _run(*column) as first, _run(*column) as second:
         points, _ = first.recv(), second.recv()
         steps = steps_of_a_turn(points)
         threads, runs = [], []
@@ -47,11 +48,11 @@ def gain_of_two_cores(material: str, cell_size: float, rounds: int) -> TwoCores:
 
 
 @contextmanager
-def _run(material: str, cell_size: float) -> Iterator[Connection]:
+def _run(material: str, cell_size: float, precision: str) -> Iterator[Connection]:
     """A process that makes steps of a column when told to."""
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe()
-    process = context.Process(target=_serve, args=(there, material, cell_size))
+    process = context.Process(target=_serve, args=(there, material, cell_size, precision))
     process.start()
     try:
         yield here
@@ -60,8 +61,8 @@ def _run(material: str, cell_size: float) -> Iterator[Connection]:
         process.join()
 
 
-def _serve(connection: Connection, material: str, cell_size: float) -> None:
-    column = moving_column(material, cell_size)
+def _serve(connection: Connection, material: str, cell_size: float, precision: str) -> None:
+    column = moving_column(material, cell_size, precision=precision)
     make_steps(column, 3)
     connection.send(column.bodies[0].count)
     while (order := connection.recv()) is not None:
