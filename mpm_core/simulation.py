@@ -21,6 +21,7 @@ from mpm_core.held_nodes import hold_nodes
 from mpm_core.initial import build_bodies
 from mpm_core.reach import Reach, nothing_in_reach, reach_of
 from mpm_core.reports import StepReport, step_report, together
+from mpm_core.resolution import refuse_coarse_stress
 from mpm_core.scene import Scene
 from mpm_core.sleeping import STEPS_PER_LOOK, Sleep
 from mpm_core.sorting import LONGEST_DRIFT
@@ -101,6 +102,7 @@ class Simulation:
         self.grid = Grid(*size, self.periodic_axes, self.basis.wall_room, scene.precision)
         self.fields = chosen_fields(scene.output.fields, [scene.law(section.material) for section in scene.body])
         self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
+        refuse_coarse_stress(self.bodies, scene.gravity)
         started = time.perf_counter()
         for body in self.bodies:
             body.choose_kernels(self.basis, scene.transfer.spreading)

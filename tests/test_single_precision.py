@@ -8,7 +8,7 @@ from numba import njit
 from scenes_for_tests import BLOCK, CAM_CLAY, COLUMN, changed, simulation
 from test_laws_compiled import random_strain_rates, start
 
-from materials import SymmetricTensor, registry
+from materials import InputError, SymmetricTensor, registry
 from materials.compilation import pointwise_law
 from materials.precision import PRECISIONS
 from materials.single_precision import in_single, nearest_single
@@ -73,6 +73,14 @@ def test_stiff_grains_under_little_pressure_do_not_hold(monkeypatch):
     stiff = replace(usual, parameters=usual.parameters._replace(bulk_modulus=1e9))
     monkeypatch.setitem(LAWS["mu_i_lc"].law.parameter_sets, "paper", stiff)
     assert largest_difference("mu_i_lc", pressure=1e3) > BAND
+
+
+def test_a_scene_whose_stress_would_be_kept_too_coarsely_is_refused():
+    stiff = {"precision": "single", "material.mu_i_lc.bulk_modulus": 5e10}
+    with pytest.raises(InputError, match=r"^precision = 'single': the stress of body\.0 \(mu_i_lc\) would be kept to"):
+        simulation(COLUMN, stiff)
+    simulation(COLUMN, {**stiff, "precision": "double"})
+    simulation(COLUMN, {**stiff, "material.mu_i_lc.bulk_modulus": 1e7})
 
 
 def test_no_number_becomes_zero():

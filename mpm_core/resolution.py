@@ -1,0 +1,46 @@
+"""What single precision leaves of a stress that is small beside the stiffness.
+
+A pressure that follows from the density is a difference of numbers near one, kept to rho c^2 times the rounding of
+a single. A scene whose stresses are not far above that is refused.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from materials import InputError
+from mpm_core.body import Body
+from mpm_core.columns import SXX, SYY
+
+ROUNDING = float(np.finfo(np.float32).eps) / 2.0
+# Of the stress that a body is under.
+LARGEST_SHARE = 1e-2
+
+
+def refuse_coarse_stress(bodies: Sequence[Body], gravity: tuple[float, float]) -> None:
+    """Raises InputError for a body in single precision whose stress [Pa] would be kept too coarsely."""
+    for number, body in enumerate(bodies):
+        if body.precision == "double":
+            continue
+        stress = typical_stress(body, math.hypot(*gravity))
+        kept = ROUNDING * stiffness(body)
+        if kept > LARGEST_SHARE * stress > 0.0:
+            raise InputError(
+                f"precision = 'single': the stress of body.{number} ({body.law.name}) would be kept to {kept:.2g} Pa, "
+                f"its stiffness times {ROUNDING:.0e}, and is about {stress:.2g} Pa; allowed: {LARGEST_SHARE:.0%} of "
+                "that; use 'double', or a smaller stiffness"
+            )
+
+
+def stiffness(body: Body) -> float:
+    """The largest rho c^2 of a body at the start [Pa]."""
+    sound = body.largest_signal_speed() - float(np.hypot(*body.velocities).max())
+    return body.initial_density * sound * sound
+
+
+def typical_stress(body: Body, gravity: float) -> float:
+    """The largest of initial stress, weight of the body, and stress of an impact at its velocity [Pa]."""
+    height = float(np.ptp(body.places, axis=1).max())
+    impact = math.sqrt(body.initial_density * stiffness(body)) * float(np.hypot(*body.velocities).max())
+    return max(float(np.abs(body.points[[SXX, SYY]]).max()), body.initial_density * gravity * height, impact)
