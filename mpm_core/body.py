@@ -16,7 +16,7 @@ from mpm_core.grid import Grid
 from mpm_core.grid_to_points import REPORTS as TRANSFER_REPORTS
 from mpm_core.grid_to_points import make_grid_to_points
 from mpm_core.lanes import MOST_AT_ONCE
-from mpm_core.places import places_of, put_places
+from mpm_core.places import density_of_first, places_of, put_places
 from mpm_core.points_to_grid import make_points_to_grid
 from mpm_core.sorting import reorder, sort_by_stencil
 from mpm_core.stress import MAX_SIGNAL_SPEED, make_stress_pass
@@ -50,7 +50,7 @@ class Body:
         self.storage = storage
         self.points = storage[:, :count]
         self.point_mass = point_mass
-        self.initial_density = float(storage[DENSITY, 0])
+        self.initial_density = density_of_first(storage)
         self.first_id = first_id
         self.ids = np.arange(first_id, first_id + count, dtype=np.int32)
         self.stripe_starts = np.zeros(1, np.int64)

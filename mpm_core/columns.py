@@ -1,7 +1,8 @@
 """The columns of the point array: one contiguous row of memory per quantity, the same order for every law.
 
 The law's state variables follow after `FIRST_STATE`, in the order of its declaration, and the accumulated shear strain
-after them, where a scene writes it. Points in single precision end with what singles leave out of x and y (`places`).
+after them, where a scene writes it. Points in single precision end with what singles leave out of what grows by steps
+that are small beside it: density and places.
 """
 
 from typing import Any
@@ -31,8 +32,8 @@ MEAN_AROUND, CROWDING = 17, 18
 FIRST_STATE = len(NAMES)
 
 # From the end, in single precision.
-REST_X, REST_Y = -2, -1
-RESTS = ("rest_of_x", "rest_of_y")
+REST_DENSITY, REST_X, REST_Y = -3, -2, -1
+RESTS = ("rest_of_density", "rest_of_x", "rest_of_y")
 
 # In bytes.
 CACHE_LINE = 64

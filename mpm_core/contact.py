@@ -28,14 +28,13 @@ from materials.compilation import named
 from mpm_core.basis import Basis
 from mpm_core.body import Body
 from mpm_core.boundary import WallKind
-from mpm_core.columns import DENSITY
 from mpm_core.grid import Grid
 from mpm_core.places import place_access
 from mpm_core.reach import DRIFT
 from mpm_core.sources import CORE_MARK
 
 # Distances below this, in cells, are round-off of places and volumes: what starts on a wall touches it.
-ROUND_OFF = {"double": 1e-9, "single": 1e-6}
+ROUND_OFF = 1e-9
 
 
 class Contact:
@@ -79,8 +78,7 @@ class Contact:
         gaps.fill(math.inf)
         for body, (near, starts) in zip(self.bodies, self.near, strict=True):
             if len(near) > 0:
-                nothing = ROUND_OFF[body.precision] * grid.cell_size
-                points = body.storage, body.point_mass, body.initial_density, nothing
+                points = body.storage, body.point_mass, body.initial_density
                 narrow = _make_narrow(body.precision)
                 narrow(near, starts, self.rows, *points, grid.origin, grid.cell_size, basis.offset, basis.width, gaps)
         for number in self.joined:
@@ -97,21 +95,22 @@ class Contact:
 @cache
 def _make_narrow(precision: str) -> Callable[..., Any]:
     """A kernel that narrows the gaps along the rows to those of points in a precision."""
-    *_, along = place_access(precision)
+    *_, along, density = place_access(precision)
 
     @njit(error_model="numpy", cache=True)
     @named(f"{precision}_{CORE_MARK}")
     def narrow(  # type: ignore[no-untyped-def]
-        near, starts, rows, storage, mass, least_density, nothing, origin, cell_size, offset, width, gaps
+        near, starts, rows, storage, mass, least_density, origin, cell_size, offset, width, gaps
     ):
-        inverse_size, farthest = 1.0 / cell_size, 0.5 * width * cell_size
+        inverse_size = 1.0 / cell_size
+        farthest, nothing = 0.5 * width * cell_size, ROUND_OFF * cell_size
         for number in range(len(rows)):
             row, nodes = rows[number], gaps[number]
             start, last_first = origin[1 - row.axis], len(nodes) - width
             for p in near[starts[number] : starts[number + 1]]:
                 distance = abs(along(storage, row.axis, p) - row.place)
                 if distance < farthest:
-                    gap = distance - 0.5 * np.sqrt(mass / max(storage[DENSITY, p], least_density))
+                    gap = distance - 0.5 * np.sqrt(mass / max(density(storage, p), least_density))
                     gap = gap if gap > nothing else 0.0
                     first = min(int((along(storage, 1 - row.axis, p) - start) * inverse_size - offset), last_first)
                     for node in range(first, first + width):

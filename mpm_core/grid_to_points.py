@@ -295,7 +295,7 @@ def make_grid_to_points(basis: Basis, ties: bool, spreads: bool, precision: str)
     gather_velocities = make_gather(basis, NEW_VX, True, precision)
     gather_bulk = make_gather(basis, BULK, spreads, precision)
     room_for_receiving, put_receiving = make_put_receiving(basis, precision)
-    rows_of_points, place_at, put_place, _ = place_access(precision)
+    rows_of_points, place_at, put_place, *_ = place_access(precision)
     number, at_once = PRECISIONS[precision], LANES_OF[precision]
 
     @njit(parallel=True, error_model="numpy", cache=True)

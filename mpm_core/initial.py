@@ -7,7 +7,7 @@ from materials import InputError, SymmetricTensor
 from materials.law import Law
 from mpm_core.body import POINTS_AT_ONCE, Body
 from mpm_core.columns import DENSITY, FIRST_STATE, RESTS, SXX, SYY, SZZ, VX, VY, allocate
-from mpm_core.places import put_places
+from mpm_core.places import put_density, put_places
 from mpm_core.scene import BodySection, InitialStressSection, Scene
 from mpm_core.shapes import lattice
 
@@ -69,7 +69,7 @@ def _build(
     points = storage[:, : len(positions)]
     put_places(points, positions.T)
     points[VX], points[VY] = section.velocity
-    points[DENSITY] = section.density
+    put_density(points, section.density)
     spacing = scene.grid.cell_size / section.points_per_cell**0.5
     weight = -section.density * scene.gravity[1]
     points[SXX], points[SYY], points[SZZ] = _initial_stress(section.initial_stress, positions, spacing, weight)

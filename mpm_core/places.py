@@ -1,7 +1,7 @@
-"""Where points are: as exactly as doubles say, whatever the rest of a point is stored as.
+"""Where points are, and how dense: as exactly as doubles say, whatever the rest of a point is stored as.
 
-A single divides a domain into some ten million parts, and a slow point moves by less in a step. Points in single
-precision therefore keep, in two rows at their end, what singles leave out of x and y.
+A single divides a domain into some ten million parts, and a slow point moves by less in a step; so with density. Points
+in single precision therefore keep, in rows at their end, what singles leave out of both.
 """
 
 from collections.abc import Callable
@@ -12,7 +12,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from mpm_core.columns import FIRST_STATE, REST_X, REST_Y, X, Y
+from mpm_core.columns import DENSITY, FIRST_STATE, REST_DENSITY, REST_X, REST_Y, X, Y
 from mpm_core.lane_arithmetic import narrowed, widened
 from mpm_core.lanes import put, several_at
 from mpm_core.rows import OF_EVERY_LAW, rows_of
@@ -36,27 +36,42 @@ def put_places(points: NDArray[Any], places: NDArray[np.float64]) -> None:
         points[[REST_X, REST_Y]] = places - points[[X, Y]]
 
 
+def put_density(points: NDArray[Any], density: float) -> None:
+    """Give all points a density [kg/m3]."""
+    points[DENSITY] = density
+    if points.dtype == np.float32:
+        points[REST_DENSITY] = density - float(points[DENSITY, 0])
+
+
+def density_of_first(points: NDArray[Any]) -> float:
+    """The density of the first point in double precision [kg/m3]."""
+    rest = float(points[REST_DENSITY, 0]) if points.dtype == np.float32 else 0.0
+    return float(points[DENSITY, 0]) + rest
+
+
 class PlaceAccess(NamedTuple):
     """What compiled code reads and stores places with.
 
-    rows   (storage) -> the rows that every law has, and those that `at` and `put` need
-    at     (rows, p) -> x, y of four points, or eight in single precision
-    put    (rows, p, x, y)
-    along  (storage, axis, p) -> the coordinate of a point along an axis
+    rows     (storage) -> the rows that every law has, and those that `at` and `put` need
+    at       (rows, p) -> x, y of four points, or eight in single precision
+    put      (rows, p, x, y)
+    along    (storage, axis, p) -> the coordinate of a point along an axis
+    density  (storage, p) -> the density of a point
     """
 
     rows: Callable[..., Any]
     at: Callable[..., Any]
     put: Callable[..., Any]
     along: Callable[..., Any]
+    density: Callable[..., Any]
 
 
 @cache
 def place_access(precision: str) -> PlaceAccess:
     """The access for points in a precision."""
     if precision == "double":
-        return PlaceAccess(_all_rows, _at, _put, _along)
-    return PlaceAccess(_rows_and_rests, _at_both, _put_both, _along_both)
+        return PlaceAccess(_all_rows, _at, _put, _along, _density)
+    return PlaceAccess(_rows_and_rests, _at_both, _put_both, _along_both, _density_both)
 
 
 @register_jitable(forceinline=True)
@@ -103,3 +118,13 @@ def _along(storage, axis, p):  # type: ignore[no-untyped-def]
 @register_jitable(forceinline=True)
 def _along_both(storage, axis, p):  # type: ignore[no-untyped-def]
     return np.float64(storage[axis, p]) + storage[REST_X + axis, p]
+
+
+@register_jitable(forceinline=True)
+def _density(storage, p):  # type: ignore[no-untyped-def]
+    return storage[DENSITY, p]
+
+
+@register_jitable(forceinline=True)
+def _density_both(storage, p):  # type: ignore[no-untyped-def]
+    return np.float64(storage[DENSITY, p]) + storage[REST_DENSITY, p]

@@ -40,7 +40,6 @@ def stiffness(body: Body) -> float:
 
 
 def typical_stress(body: Body, gravity: float) -> float:
-    """The largest of initial stress, weight of the body, and stress of an impact at its velocity [Pa]."""
+    """The larger of initial stress and weight of the body [Pa]; zero if it has neither."""
     height = float(np.ptp(body.places, axis=1).max())
-    impact = math.sqrt(body.initial_density * stiffness(body)) * float(np.hypot(*body.velocities).max())
-    return max(float(np.abs(body.points[[SXX, SYY]]).max()), body.initial_density * gravity * height, impact)
+    return max(float(np.abs(body.points[[SXX, SYY]]).max()), body.initial_density * gravity * height)

@@ -207,7 +207,7 @@ class Scene(Section):
     )
     precision: Literal["double", "single"] = Field(
         default="double",
-        description="of nodes and points, and of the arithmetic of laws that hold in it; places are exact in both",
+        description="of nodes and points, but for places and densities, and of the arithmetic of laws that hold in it",
     )
     gravity: Corner = Field(default=(0.0, -9.81), description="gravity vector [m/s2]")
     grid: GridSection

@@ -29,6 +29,7 @@ from mpm_core.columns import (
     LYX,
     LYY,
     MEAN_AROUND,
+    REST_DENSITY,
     SXX,
     SXY,
     SYY,
@@ -91,11 +92,12 @@ def tie_volumes(rows, first, last, duration, exchange, stiffness, ties):  # type
 
 
 @adaptable
-def bring_forward(rows, first, last, dt, ties, room):  # type: ignore[no-untyped-def]
+def bring_forward(rows, first, last, dt, ties, room, rest):  # type: ignore[no-untyped-def]
     """Rotate the stress and bring the density to the end of the step; returns the largest volumetric increment.
 
     `ties` are compressive strains besides those of the motion. The room receives the power of the old stress over mass,
-    and the new volume over mass.
+    and the new volume over mass. In single precision `rest` is what singles leave out of the densities: slow strains
+    change a density by less than its rounding in a step, and would be lost.
     """
     works, volumes = room
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
@@ -113,9 +115,28 @@ def bring_forward(rows, first, last, dt, ties, room):  # type: ignore[no-untyped
         works[p - first] = power * (inverse * grown * shrunk)
         volumes[p - first] = inverse * grown * grown
         sxx[p], syy[p], sxy[p] = xx, yy, xy
-        density[p] = fused(-2.0 * half_increment, density[p] * (density[p] * shrunk * inverse), density[p])
+        # by which the density changes from rho to rho (1 - h)/(1 + h)
+        scale, strain = density[p] * (density[p] * shrunk * inverse), -2.0 * half_increment
+        if rest is None:
+            density[p] = fused(strain, scale, density[p])
+        else:
+            change = fused(strain, scale, rest[p])
+            new = density[p] + change
+            rest[p] = change - (new - density[p])
+            density[p] = new
         largest = max(largest, ordered_bits(abs(2.0 * half_increment)))
     return largest
+
+
+@register_jitable
+def no_rest(storage):  # type: ignore[no-untyped-def]
+    """Doubles leave nothing out."""
+
+
+@register_jitable
+def rest_in_single(storage):  # type: ignore[no-untyped-def]
+    """What singles leave out of the densities."""
+    return storage[REST_DENSITY]
 
 
 def make_accumulate_shear_strain(row: int | None, mark: str) -> Callable[..., Any]:
@@ -174,6 +195,7 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str
     all_rows = (0.0,) * (after_state + keeps_shear_strain)
     shear_strain = make_accumulate_shear_strain(after_state if keeps_shear_strain else None, mark)
     accumulate = in_precision(shear_strain, precision)
+    rest_of_density = rest_in_single if precision == "single" else no_rest
     forward, tie = in_precision(bring_forward, precision), in_precision(tie_volumes, precision)
 
     @njit(parallel=True, error_model="numpy", cache=True)
@@ -195,7 +217,7 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str
                         find_stiffness(rows, first, last, parameters, stiffness)
                         tie(rows, first, last, number(tied), number(exchange), stiffness, ties)
                     accumulate(rows, first, last, step)
-                    increment = forward(rows, first, last, step, ties, room)
+                    increment = forward(rows, first, last, step, ties, room, rest_of_density(storage))
                     apply_law(rows, first, last, ties, parameters, dt)
                     speed = largest_signal_speed(rows, first, last, parameters)
                     work += work_done(rows, first, last, room)
