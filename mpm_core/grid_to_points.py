@@ -30,7 +30,8 @@ from materials.tensor import SymmetricTensor, shear_strain_rate
 from mpm_core.basis import Basis
 from mpm_core.blocks import points_of_block
 from mpm_core.columns import AXX, AXY, AYX, AYY, CROWDING, LXX, LXY, LYX, LYY, MEAN_AROUND, SXX, SYY, VX, VY
-from mpm_core.grid import BULK, COMPONENTS, NEW_VX
+from mpm_core.gather import make_gather
+from mpm_core.grid import BULK, NEW_VX
 from mpm_core.lane_arithmetic import (
     filled_like,
     first_lanes,
@@ -43,7 +44,7 @@ from mpm_core.lane_arithmetic import (
     where_equal,
     widened,
 )
-from mpm_core.lanes import LANES, LANES_OF, put, quad_at, several_at, single_quad_at, transposed_at
+from mpm_core.lanes import LANES, LANES_OF, put, several_at, transposed_at
 from mpm_core.parts import next_part, shares_of, threads_of
 from mpm_core.places import place_access
 from mpm_core.sources import CORE_MARK
@@ -214,43 +215,6 @@ def moved(rows, first, last, at_once, dt, memory, velocities, energies, sums, pl
         count = float(last - p)
         sums = added_to_sums(sums, widened(twice_energy), moved_x, moved_y, new_x, new_y, count, at_once)
     return sums
-
-
-def make_gather(basis: Basis, component: int, with_gradients: bool, precision: str) -> Callable[..., Any]:
-    """A function that fills what a group receives of four components of the nodes, and of their gradients."""
-    width, first_component = basis.width, np.uint64(component)
-    components_at = quad_at if precision == "double" else single_quad_at
-
-    @register_jitable(forceinline=True)
-    @named(f"{basis.name}_{component}_{with_gradients:d}_{precision}_{CORE_MARK}")
-    def gather(count, nodes, nodes_y, receiving, gathered):  # type: ignore[no-untyped-def]
-        starts, weights_x, weights_y, slopes_x, slopes_y, _, _ = receiving
-        means, gradients_x, gradients_y = gathered
-        row_length = np.uint64(nodes_y * COMPONENTS)
-        for k in range(count):
-            row = np.uint64(starts[k]) * np.uint64(COMPONENTS) + first_component
-            nothing = filled_like(0.0, components_at(nodes, row))
-            mean, gradient_x, gradient_y = nothing, nothing, nothing
-            for a in range(width):
-                in_row, gradient = nothing, nothing
-                for b in range(width):
-                    at = np.uint64(b * GROUP) + k
-                    values = components_at(nodes, row + np.uint64(b * COMPONENTS))
-                    in_row = scaled_sum(weights_y[at], values, in_row)
-                    if with_gradients:
-                        gradient = scaled_sum(slopes_y[at], values, gradient)
-                at = np.uint64(a * GROUP) + k
-                mean = scaled_sum(weights_x[at], in_row, mean)
-                if with_gradients:
-                    gradient_x = scaled_sum(slopes_x[at], in_row, gradient_x)
-                    gradient_y = scaled_sum(weights_x[at], gradient, gradient_y)
-                row += row_length
-            put(means, LANES * k, mean)
-            if with_gradients:
-                put(gradients_x, LANES * k, gradient_x)
-                put(gradients_y, LANES * k, gradient_y)
-
-    return gather
 
 
 def make_put_receiving(basis: Basis, precision: str) -> tuple[Callable[..., Any], Callable[..., Any]]:

@@ -122,6 +122,48 @@ def _half_oct_at(typing_context: Any, array: Any, position: Any) -> Any:
 
 
 @intrinsic
+def _twice_at(typing_context: Any, array: Any, position: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        values, place = arguments
+        half = load(context, builder, signature.args[0], values, place, LANES)
+        return converted(builder, shuffled(builder, half, half, [*range(LANES), *range(LANES)]), types.float32)
+
+    return LanesType(types.float32, 2 * LANES)(array, position), generate
+
+
+@intrinsic
+def _two_numbers(typing_context: Any, first: Any, second: Any) -> Any:
+    kind = LanesType(types.float32, 2 * LANES)
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        vector = ir.Constant(vector_of(kind), ir.Undefined)
+        for lane, number in enumerate(arguments):
+            vector = builder.insert_element(vector, number, ir.Constant(INDEX, lane))
+        return shuffled(builder, vector, vector, [0] * LANES + [1] * LANES)
+
+    return kind(types.float32, types.float32), generate
+
+
+def _half(number: int) -> Any:
+    """One half of some lanes."""
+
+    @intrinsic
+    def half(typing_context: Any, lanes: Any) -> Any:
+        count = lanes.count // 2
+
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            (whole,) = arguments
+            return shuffled(builder, whole, whole, list(range(number * count, (number + 1) * count)))
+
+        return LanesType(lanes.number, count)(lanes), generate
+
+    return half
+
+
+_first_half, _second_half = _half(0), _half(1)
+
+
+@intrinsic
 def _put(typing_context: Any, array: Any, position: Any, lanes: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         store(context, builder, signature.args[0], *arguments)
@@ -219,6 +261,30 @@ def oct_at(array: Any, position: Any) -> Any:
 def half_oct_at(array: Any, position: Any) -> Any:
     """The four numbers from a position on, and four times -0, which added to anything leaves it as it is."""
     return _half_oct_at(array, position)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def twice_at(array: Any, position: Any) -> Any:
+    """The four numbers from a position on, and the same again, as singles."""
+    return _twice_at(array, position)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def two_numbers(first: Any, second: Any) -> Any:
+    """Four times one single and four times another."""
+    return _two_numbers(first, second)  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def first_half(lanes: Any) -> Any:
+    """The first half of some lanes."""
+    return _first_half(lanes)
+
+
+@register_jitable(forceinline=True)
+def second_half(lanes: Any) -> Any:
+    """The second half of some lanes."""
+    return _second_half(lanes)
 
 
 @register_jitable(forceinline=True)

@@ -13,6 +13,7 @@ KERNEL_FILES = (
     "contact",
     "elastic_energy",
     "fields",
+    "gather",
     "grid",
     "grid_to_points",
     "lane_arithmetic",
