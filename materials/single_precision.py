@@ -64,6 +64,8 @@ def _value(value: Any) -> Any:
     """What stands for a constant, a global or a value of a closure."""
     if isinstance(value, float):
         return nearest_single(value)
+    if type(value) is tuple:
+        return tuple(map(_value, value))
     if inspect.isfunction(value) and (value in MARKED or value in _ADAPTABLE):
         return in_single(value)
     return value

@@ -152,10 +152,8 @@ def _put_stress(rows, p, stress):  # type: ignore[no-untyped-def]
 
 def _make_update(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
     law_update, parameter_class, number = law.update, law.parameters, PRECISIONS[law.precision]
-    (stress_at, strain_rate_at), (load, store) = (
-        point_access(law.precision),
-        make_state_access(law.state, mark, law.precision),
-    )
+    stress_at, strain_rate_at = point_access(law.precision)
+    load, store = make_state_access(law.state, mark, law.precision)
 
     @register_jitable(forceinline=True)
     @named(mark)
@@ -176,10 +174,8 @@ def _make_update(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
 def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: str) -> Callable[..., Any]:
     """Without a branch but for what is stored, so that the compiler takes several points at once."""
     parameter_class, number = law.parameters, PRECISIONS[law.precision]
-    (stress_at, strain_rate_at), (load, store) = (
-        point_access(law.precision),
-        make_state_access(law.state, mark, law.precision),
-    )
+    stress_at, strain_rate_at = point_access(law.precision)
+    load, store = make_state_access(law.state, mark, law.precision)
 
     @register_jitable(forceinline=True)
     @named(mark)

@@ -27,6 +27,7 @@ MISTAKES = {
     "equilibrium": (STRENGTH, STRENGTH + "    p *= 1.0 + 1e-3\n"),
     "convergence": (RETURNED, RETURNED.replace("scaled(trial, ", "scaled(trial, 0.999 * ")),
     "bounds": (STRENGTH, STRENGTH + "    strength += math.sqrt(0.45 - parameters.poisson_ratio)\n"),
+    "single": (STRENGTH, STRENGTH + "    strength += (1.0 + 1e-9 * p - 1.0) * 1e9\n"),
     "compiled": (STRENGTH, STRENGTH + "    strength = [strength, p][0] if isinstance(p, float) else eval('p')\n"),
 }
 

@@ -18,6 +18,8 @@ from validation.conformance.subject import DT, PointState, Subject, flowing_stra
 
 COMPUTE_CAPABILITY = (7, 5)
 TIMED_UPDATES, TIMED_STEPS = 200_000, 2000
+# Between singles and doubles, over the stress.
+LARGEST_DIFFERENCE = 1e-3
 DIRECTIONS = {
     "no strain": isotropic(0.0),
     "compression": isotropic(-1.0 / 3.0),
@@ -72,6 +74,27 @@ def compiled(subject: Subject) -> Outcome:
         if found != (call.end.stress, call.end.state):
             return Outcome("FAIL", f"compiled code and plain Python differ in update {number}")
     return Outcome("pass", f"{len(subject.calls)} updates, bit for bit")
+
+
+def single(subject: Subject) -> Outcome:
+    """A law that says so holds in single precision."""
+    if not subject.law.holds_in_single:
+        return Outcome("skipped", "not stated: the law is computed in double precision")
+    step, worst = make_single_step(pointwise_law(subject.law, "single")), 0.0
+    for start, strain_rate, dt, end in subject.calls:
+        point = start.stress, strain_rate, end.density, start.state, subject.parameters, dt
+        found, _ = explained(subject.law, step, *map(_as_singles, point))
+        scale = max(subject.pressure, *map(abs, end.stress))
+        worst = max(worst, *(abs(a - b) / scale for a, b in zip(found, end.stress, strict=True)))
+    return judged(worst < LARGEST_DIFFERENCE, f"{worst:.1e} of the stress, allowed: {LARGEST_DIFFERENCE:g}")
+
+
+def _as_singles(value: Any) -> Any:
+    """A number, or the NamedTuple of numbers, in single precision."""
+    if not isinstance(value, tuple):
+        return np.float32(value)
+    kind: Any = type(value)
+    return kind(*map(np.float32, value))
 
 
 def ptx(subject: Subject) -> Outcome:

@@ -54,6 +54,7 @@ CHECKS = (
     Check("finite", "stress, state and wave speed are numbers at p = 0, opened and closed again", code.finite),
     Check("pure", "the same input gives the same output, however often and in whatever order", code.pure),
     Check("compiled", "compiled code gives the bits of plain Python", code.compiled),
+    Check("single", "a law that says `holds_in_single` gives the same stress in single precision", code.single),
     Check("ptx", "the update compiles for a GPU; skipped without numba-cuda", code.ptx),
     Check("cost", "nanoseconds of one compiled update in shear flow; a report, not a limit", code.cost),
 )
