@@ -202,8 +202,9 @@ class Scene(Section):
     title: str = Field(default="", description="one line for reports")
     accuracy: Literal["10%", "3%", "1%"] | None = Field(
         default=None,
-        description="sets grid.cell_size, time.safety and body.points_per_cell where the scene does not, to what kept "
-        "runout, height and centre of mass of column collapses within this of finer grids with 16 points per cell",
+        description="sets grid.cell_size, time.safety, body.points_per_cell and precision where the scene does not, to "
+        "what kept runout, height and centre of mass of column collapses within this of finer grids with 16 points per "
+        "cell",
     )
     precision: Literal["double", "single"] = Field(
         default="double",

@@ -1,6 +1,7 @@
 """What accuracy costs, and whether the settings of `accuracy` keep their word on a column they were not chosen on."""
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from mpm_core.scene import Scene
@@ -46,7 +47,8 @@ def promised_setting(material: str, accuracy: str, column: str, cell_size: float
     left_open = {"grid.cell_size": cell_size, "body.0.points_per_cell": None}
     changes = {"accuracy": accuracy, "body.0.shape": shape, **left_open}
     scene = Scene.load(FOLDER_OF_SCENES / f"{SCENES[material]}.toml", changes)
-    return Setting(material, column, scene.grid.cell_size, scene.body[0].points_per_cell, scene.time.safety)
+    found = Setting(material, column, scene.grid.cell_size, scene.body[0].points_per_cell, scene.time.safety)
+    return replace(found, precision=scene.precision)
 
 
 def mean_outcome(fine: Iterable[Setting]) -> dict[str, float]:
