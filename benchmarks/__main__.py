@@ -116,8 +116,8 @@ def main(
 ) -> None:
     """Time the library: pass by pass against the roofline, against the yardstick, over size, domain and memory."""
     chosen = QUICK if quick else FULL
-    chosen = replace(chosen, precision=precision.value)
-    effort = replace(chosen, cell_size=cell_size or chosen.cell_size, end=end or chosen.end)
+    size, last = cell_size or chosen.cell_size, end or chosen.end
+    effort = replace(chosen, cell_size=size, end=last, precision=precision.value)
     materials = material or list(SCENES)
     record = Record()
     machine = machine_description()

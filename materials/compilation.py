@@ -141,10 +141,9 @@ def pointwise_law(law: Law, precision: str = "double") -> PointwiseLaw:
     modules = {law.parameters.__module__, law.state.__module__}
     for kind in (law.parameters, law.state):
         _name_by_module(kind)
-    files = _source_files([*functions, *optional])
-    register: Callable[..., Any] = _register_marked
-    if precision == "single":
-        files, register = files | {Path(inspect.getfile(in_single))}, in_single
+    register: Callable[..., Any] = in_single if precision == "single" else _register_marked
+    # What is computed around a law in double precision may be in single.
+    files = _source_files([*functions, *optional]) | {Path(inspect.getfile(in_single))}
     return PointwiseLaw(
         name=law.name,
         precision=precision,

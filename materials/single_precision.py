@@ -29,19 +29,20 @@ def adaptable(function: Callable[..., Any]) -> Callable[..., Any]:
 def in_single(function: Callable[..., Any]) -> Callable[..., Any]:
     """The version in single precision of a function, registered with the compiler; one for all callers."""
     if function not in _FOUND:
-        _FOUND[function] = _registered(_adapted(function), forceinline=function not in _ADAPTABLE)
+        register = register_jitable(forceinline=function not in _ADAPTABLE)
+        _FOUND[function] = register(_adapted(function))
     return _FOUND[function]
+
+
+def in_precision(function: Callable[..., Any], precision: str) -> Callable[..., Any]:
+    """An adaptable function as it is, or its version in single precision."""
+    return in_single(function) if precision == "single" else function
 
 
 def nearest_single(number: float) -> Any:
     """The single nearest to a number, but none that is zero for a number that is not."""
     single = np.float32(number)
     return single if single != 0.0 or number == 0.0 else np.finfo(np.float32).tiny
-
-
-def _registered(function: Callable[..., Any], forceinline: bool) -> Callable[..., Any]:
-    register = register_jitable(forceinline=True) if forceinline else register_jitable
-    return register(function)
 
 
 def _adapted(function: Callable[..., Any]) -> Callable[..., Any]:

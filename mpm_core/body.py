@@ -16,7 +16,7 @@ from mpm_core.grid import Grid
 from mpm_core.grid_to_points import REPORTS as TRANSFER_REPORTS
 from mpm_core.grid_to_points import make_grid_to_points
 from mpm_core.lanes import MOST_AT_ONCE
-from mpm_core.places import density_of_first, places_of, put_places
+from mpm_core.places import coordinate_of, density_of_first, places_of, put_coordinate
 from mpm_core.points_to_grid import make_points_to_grid
 from mpm_core.sorting import reorder, sort_by_stencil
 from mpm_core.stress import MAX_SIGNAL_SPEED, make_stress_pass
@@ -221,9 +221,7 @@ class Body:
 
     def wrap(self, axis: int, lower: float, period: float) -> None:
         """Bring points that left through a periodic side back in through the other."""
-        places = self.places
-        places[axis] = lower + np.mod(places[axis] - lower, period)
-        put_places(self.points, places)
+        put_coordinate(self.points, axis, lower + np.mod(coordinate_of(self.points, axis) - lower, period))
 
     def update_stress(self, dt: float, tied: float = 0.0, exchange: float = 0.0, threads: int = 1) -> None:
         """Rotate the stress, bring the density forward, call the law.

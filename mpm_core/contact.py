@@ -29,7 +29,7 @@ from mpm_core.basis import Basis
 from mpm_core.body import Body
 from mpm_core.boundary import WallKind
 from mpm_core.grid import Grid
-from mpm_core.places import place_access
+from mpm_core.places import coordinate_of, place_access
 from mpm_core.reach import DRIFT
 from mpm_core.sources import CORE_MARK
 
@@ -66,7 +66,7 @@ class Contact:
         return np.concatenate([nothing, *found]), np.cumsum([0, *map(len, found)])
 
     def _near_row(self, body: Body, row: np.void) -> NDArray[np.int64]:
-        away = np.abs(body.places[row["axis"]] - row["place"])
+        away = np.abs(coordinate_of(body.points, row["axis"]) - row["place"])
         return np.flatnonzero(away < (0.5 * self.basis.width + DRIFT) * self.grid.cell_size)
 
     def gaps(self) -> NDArray[np.float64]:

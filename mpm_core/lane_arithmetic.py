@@ -14,15 +14,7 @@ from numba.core import types
 from numba.core.cgutils import get_or_insert_function
 from numba.extending import intrinsic, overload, register_jitable
 
-from mpm_core.lanes import (
-    INDEX,
-    LANES,
-    SCALARS,
-    LanesType,
-    converted,
-    shuffled,
-    vector_of,
-)
+from mpm_core.lanes import INDEX, LANES, SCALARS, LanesType, converted, shuffled, vector_of
 
 
 def _in_all_lanes(builder: Any, scalar: Any, kind: LanesType) -> Any:

@@ -8,6 +8,7 @@ Arithmetic (`lane_arithmetic`) is written as for scalars. Each lane is rounded l
 that the width of the machine's registers changes the time, not the result.
 """
 
+from collections.abc import Iterator
 from typing import Any
 
 from llvmlite import ir
@@ -87,6 +88,11 @@ def store(context: Any, builder: Any, array_type: Any, array: Any, position: Any
     builder.store(converted(builder, vector, array_type.dtype), pointer, align=alignment)
 
 
+def _several(number: Any) -> LanesType:
+    """As many numbers of a kind as are taken at once."""
+    return LanesType(number, BYTES_AT_ONCE // SCALARS[number][2])
+
+
 def _loading(kind_of: Any) -> Any:
     """An intrinsic (array, position) -> lanes of the kind that belongs to the kind of the array's numbers."""
 
@@ -106,7 +112,7 @@ def _loading(kind_of: Any) -> Any:
 
 _quad_at = _loading(lambda number: LanesType(types.float64, LANES))
 _single_quad_at = _loading(lambda number: LanesType(types.float32, LANES))
-_several_at = _loading(lambda number: LanesType(number, BYTES_AT_ONCE // SCALARS[number][2]))
+_several_at = _loading(_several)
 _oct_at = _loading(lambda number: LanesType(number, 2 * LANES))
 
 
@@ -189,6 +195,19 @@ def _transposed(builder: Any, a: Any, b: Any, c: Any, d: Any) -> list[Any]:
     return [shuffled(builder, *pair) for pair in pairs]
 
 
+def _by_points(builder: Any, count: int, first: list[Any], second: list[Any]) -> Iterator[tuple[int, Any]]:
+    """Vectors of whole points, or of their halves, and how far from the first they belong."""
+    if count == LANES:
+        # Two stores of four doubles are faster than one of eight.
+        for half, rows in enumerate((first, second)):
+            yield from ((LANES * (2 * point + half), row) for point, row in enumerate(rows))
+        return
+    for point in range(count):
+        four, row = divmod(point, LANES)
+        lanes = [LANES * four + lane for lane in range(LANES)]
+        yield 2 * LANES * point, shuffled(builder, first[row], second[row], [*lanes, *(count + k for k in lanes)])
+
+
 @intrinsic
 def _put_transposed(typing_context: Any, vectors: Any, position: Any, components: Any) -> Any:
     kind = components.dtype
@@ -196,17 +215,9 @@ def _put_transposed(typing_context: Any, vectors: Any, position: Any, components
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         array, position, packed = arguments
         given = cgutils.unpack_tuple(builder, packed, 2 * LANES)
-        first, second = _transposed(builder, *given[:LANES]), _transposed(builder, *given[LANES:])
-        # Two stores of four doubles are faster than one of eight.
-        for point in range(kind.count) if kind.count > LANES else ():
-            four, row = divmod(point, LANES)
-            lanes = [LANES * four + lane for lane in range(LANES)]
-            whole = shuffled(builder, first[row], second[row], [*lanes, *(kind.count + lane for lane in lanes)])
-            store(context, builder, signature.args[0], array, _further(builder, position, 2 * LANES * point), whole)
-        for half, rows in enumerate((first, second) if kind.count == LANES else ()):
-            for point, row in enumerate(rows):
-                place = _further(builder, position, LANES * (2 * point + half))
-                store(context, builder, signature.args[0], array, place, row)
+        halves = [_transposed(builder, *given[:LANES]), _transposed(builder, *given[LANES:])]
+        for distance, vector in _by_points(builder, kind.count, *halves):
+            store(context, builder, signature.args[0], array, _further(builder, position, distance), vector)
         return context.get_dummy_value()
 
     return types.void(vectors, position, components), generate
@@ -214,7 +225,7 @@ def _put_transposed(typing_context: Any, vectors: Any, position: Any, components
 
 @intrinsic
 def _transposed_at(typing_context: Any, vectors: Any, position: Any) -> Any:
-    kind = LanesType(vectors.dtype, BYTES_AT_ONCE // SCALARS[vectors.dtype][2])
+    kind = _several(vectors.dtype)
     result = types.UniTuple(kind, LANES)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:

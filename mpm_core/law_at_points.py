@@ -13,7 +13,7 @@ from numba.extending import register_jitable
 
 from materials.compilation import PointwiseLaw, named
 from materials.precision import PRECISIONS
-from materials.single_precision import adaptable, in_single
+from materials.single_precision import adaptable, in_precision
 from materials.tensor import SymmetricTensor, added, isotropic
 from mpm_core.columns import DENSITY, FIRST_STATE, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ, VX, VY
 from mpm_core.side_by_side import side_by_side
@@ -138,11 +138,6 @@ def point_access(precision: str) -> PointAccess:
         return added(motion, isotropic(number(tie) * (-1.0 / (3.0 * dt))))
 
     return PointAccess(stress_at, in_precision(strain_rate_at, precision))
-
-
-def in_precision(function: Callable[..., Any], precision: str) -> Callable[..., Any]:
-    """An adaptable function as it is, or its version in single precision."""
-    return in_single(function) if precision == "single" else function
 
 
 @register_jitable(forceinline=True)

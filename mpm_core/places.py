@@ -21,19 +21,31 @@ from mpm_core.rows import OF_EVERY_LAW, rows_of
 _FOUND_X, _FOUND_Y = FIRST_STATE, FIRST_STATE + 1
 
 
+def coordinate_of(points: NDArray[Any], axis: int) -> NDArray[np.float64]:
+    """Coordinate of points along an axis in double precision, not to be written to, shape (n,) [m]."""
+    coordinate: NDArray[Any] = points[(X, Y)[axis]]
+    if points.dtype == np.float64:
+        return coordinate
+    return coordinate.astype(np.float64) + points[(REST_X, REST_Y)[axis]]
+
+
 def places_of(points: NDArray[Any]) -> NDArray[np.float64]:
     """Coordinates of points in double precision, shape (2, n) [m]."""
-    places = points[[X, Y]].astype(np.float64, copy=False)
+    return np.stack([coordinate_of(points, axis) for axis in (0, 1)])
+
+
+def put_coordinate(points: NDArray[Any], axis: int, coordinate: NDArray[np.float64]) -> None:
+    """Move points along an axis to a coordinate, shape (n,) [m]."""
+    row = (X, Y)[axis]
+    points[row] = coordinate
     if points.dtype == np.float32:
-        places += points[[REST_X, REST_Y]]
-    return places
+        points[(REST_X, REST_Y)[axis]] = coordinate - points[row]
 
 
 def put_places(points: NDArray[Any], places: NDArray[np.float64]) -> None:
     """Move points to coordinates, shape (2, n) [m]."""
-    points[[X, Y]] = places
-    if points.dtype == np.float32:
-        points[[REST_X, REST_Y]] = places - points[[X, Y]]
+    for axis, coordinate in enumerate(places):
+        put_coordinate(points, axis, coordinate)
 
 
 def put_density(points: NDArray[Any], density: float) -> None:

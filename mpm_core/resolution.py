@@ -18,25 +18,24 @@ ROUNDING = float(np.finfo(np.float32).eps) / 2.0
 LARGEST_SHARE = 1e-2
 
 
-def refuse_coarse_stress(bodies: Sequence[Body], gravity: tuple[float, float]) -> None:
-    """Raises InputError for a body in single precision whose stress [Pa] would be kept too coarsely."""
-    for number, body in enumerate(bodies):
+def refuse_coarse_stress(
+    bodies: Sequence[Body], signals: Sequence[tuple[float, float]], gravity: tuple[float, float]
+) -> None:
+    """Raises InputError for a body in single precision whose stress [Pa] would be kept too coarsely.
+
+    `signals` are the largest signal speed c + |v| and the largest |v| of each body's points at the start [m/s].
+    """
+    for number, (body, (fastest, speed)) in enumerate(zip(bodies, signals, strict=True)):
         if body.precision == "double":
             continue
         stress = typical_stress(body, math.hypot(*gravity))
-        kept = ROUNDING * stiffness(body)
+        kept = ROUNDING * body.initial_density * (fastest - speed) ** 2
         if kept > LARGEST_SHARE * stress > 0.0:
             raise InputError(
                 f"precision = 'single': the stress of body.{number} ({body.law.name}) would be kept to {kept:.2g} Pa, "
                 f"its stiffness times {ROUNDING:.0e}, and is about {stress:.2g} Pa; allowed: {LARGEST_SHARE:.0%} of "
                 "that; use 'double', or a smaller stiffness"
             )
-
-
-def stiffness(body: Body) -> float:
-    """The largest rho c^2 of a body at the start [Pa]."""
-    sound = body.largest_signal_speed() - float(np.hypot(*body.velocities).max())
-    return body.initial_density * sound * sound
 
 
 def typical_stress(body: Body, gravity: float) -> float:

@@ -102,7 +102,8 @@ class Simulation:
         self.grid = Grid(*size, self.periodic_axes, self.basis.wall_room, scene.precision)
         self.fields = chosen_fields(scene.output.fields, [scene.law(section.material) for section in scene.body])
         self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
-        refuse_coarse_stress(self.bodies, scene.gravity)
+        signals = self._signals_of_points()
+        refuse_coarse_stress(self.bodies, signals, scene.gravity)
         started = time.perf_counter()
         for body in self.bodies:
             body.choose_kernels(self.basis, scene.transfer.spreading)
@@ -123,15 +124,20 @@ class Simulation:
         # No signal is slower than a fall through one cell, for material without stiffness.
         self.free_fall_speed = math.sqrt(math.hypot(*scene.gravity) * self.grid.cell_size)
         self.signal_bounds = [signal_bounds(body.law, body.parameters, body.initial_density) for body in self.bodies]
-        self.measure_signals()
+        self._take_signals(signals)
         first = self.scene.time.step or self.adaptive_step()
         self.smallest_step = self.scene.time.smallest_step or (SMALLEST_SHARE * first if first < math.inf else 0.0)
 
     def measure_signals(self) -> None:
         """Take what bounds the step from the points as they are: at the start, and where a program has moved them."""
-        self.signal_speed = self._signal_speed(
-            [(body.largest_signal_speed(), float(np.hypot(*body.velocities).max())) for body in self.bodies]
-        )
+        self._take_signals(self._signals_of_points())
+
+    def _signals_of_points(self) -> list[tuple[float, float]]:
+        """Of each body the fastest signal and the fastest point [m/s], in plain Python."""
+        return [(body.largest_signal_speed(), float(np.hypot(*body.velocities).max())) for body in self.bodies]
+
+    def _take_signals(self, signals: list[tuple[float, float]]) -> None:
+        self.signal_speed = self._signal_speed(signals)
         self.strain_rate = max(float(strain_rates(body).max()) for body in self.bodies)
 
     def step(self, dt: float) -> None:

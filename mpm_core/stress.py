@@ -17,7 +17,7 @@ from numba.extending import register_jitable
 from materials.compilation import PointwiseLaw, named
 from materials.elementary import fused
 from materials.precision import PRECISIONS
-from materials.single_precision import adaptable
+from materials.single_precision import adaptable, in_precision
 from materials.tensor import THIRD, SymmetricTensor, shear_strain_rate, trace
 from mpm_core.blocks import points_of_block
 from mpm_core.columns import (
@@ -37,13 +37,7 @@ from mpm_core.columns import (
 )
 from mpm_core.lane_arithmetic import filled, first_lanes, total
 from mpm_core.lanes import LANES, quad_at
-from mpm_core.law_at_points import (
-    in_precision,
-    make_apply_law,
-    make_find_stiffness,
-    make_largest_signal_speed,
-    ordered_bits,
-)
+from mpm_core.law_at_points import make_apply_law, make_find_stiffness, make_largest_signal_speed, ordered_bits
 from mpm_core.parts import next_part, shares_of, threads_of
 from mpm_core.rows import rows_of
 from mpm_core.sources import CORE_MARK

@@ -8,8 +8,9 @@ from numba import njit
 from scenes_for_tests import BLOCK, CAM_CLAY, COLUMN, changed, simulation
 from test_laws_compiled import random_strain_rates, start
 
+from benchmarks.columns import advance_to
 from materials import InputError, SymmetricTensor, registry
-from materials.compilation import pointwise_law
+from materials.compilation import make_single_step, pointwise_law
 from materials.precision import PRECISIONS
 from materials.single_precision import in_single, nearest_single
 from mpm_core.columns import SXX
@@ -25,21 +26,8 @@ COLUMN_OF_CLAY = changed(COLUMN, {"material": {"modified_cam_clay": CAM_CLAY}, "
 
 
 def compiled(law, precision):
-    update, number = pointwise_law(law, precision).update, PRECISIONS[precision]
-
-    @njit
-    def step(stress, strain_rate, density, state, parameters, dt):
-        return update(stress, strain_rate, density, state, parameters, dt)
-
-    def take(*arguments):
-        return step(*(as_numbers(argument, number) for argument in arguments))
-
-    return take
-
-
-def advance_to(case, end):
-    while case.time < end:
-        case.step(case.adaptive_step())
+    step, number = make_single_step(pointwise_law(law, precision)), PRECISIONS[precision]
+    return lambda *arguments: step(*(as_numbers(argument, number) for argument in arguments))
 
 
 def as_numbers(value, number):

@@ -1,7 +1,6 @@
 """What accuracy costs, and whether the settings of `accuracy` keep their word on a column they were not chosen on."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from mpm_core.scene import Scene
@@ -47,8 +46,8 @@ def promised_setting(material: str, accuracy: str, column: str, cell_size: float
     left_open = {"grid.cell_size": cell_size, "body.0.points_per_cell": None}
     changes = {"accuracy": accuracy, "body.0.shape": shape, **left_open}
     scene = Scene.load(FOLDER_OF_SCENES / f"{SCENES[material]}.toml", changes)
-    found = Setting(material, column, scene.grid.cell_size, scene.body[0].points_per_cell, scene.time.safety)
-    return replace(found, precision=scene.precision)
+    chosen = scene.grid.cell_size, scene.body[0].points_per_cell, scene.time.safety
+    return Setting(material, column, *chosen, precision=scene.precision)
 
 
 def mean_outcome(fine: Iterable[Setting]) -> dict[str, float]:

@@ -7,6 +7,7 @@ from itertools import product
 from typing import Any
 
 from materials import SimulationError
+from materials.precision import PRECISIONS
 from mpm_core.body import Body
 from validation.driven_square import PERIOD, Array, DrivenSquare
 from validation.speed_error.setting import WARM_UP_STEPS, make_steps
@@ -14,7 +15,6 @@ from validation.speed_error.sweep import BASES, SAFETIES, SCHEMES
 
 CELLS = (8, 16, 32)
 POINTS_PER_CELL = (4, 16)
-PRECISIONS = ("double", "single")
 
 
 @dataclass(frozen=True, order=True)
