@@ -11,8 +11,8 @@ cell of 2 x 2 points that touches a wall is a quarter of a cell away. An opened 
 what it gained is void. A point that is closer than half of its size touches, no more. The node may approach the wall by
 no more than g_i in a step (`boundary`).
 
-A minimum does not depend on the order of points, and which points can come near a wall before the next sort is found
-again from where they are, so that a checkpoint need not hold any of it.
+A minimum does not depend on the order of points, nor on which thread looks at which of them. Which points can come near
+a wall before the next sort is found again from where they are, so that a checkpoint need not hold any of it.
 """
 
 import math
@@ -21,7 +21,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numba import njit
+from numba import njit, prange
 from numpy.typing import NDArray
 
 from materials.compilation import named
@@ -40,7 +40,7 @@ ROUND_OFF = 1e-9
 class Contact:
     """The points that may come into the support of the rows of friction walls before the next sort.
 
-    `rows` are those of walls (`boundary.HELD_ROW`).
+    `rows` are those of walls (`boundary.HELD_ROW`). Threads share the points: each finds the gaps to its own.
     """
 
     def __init__(
@@ -50,6 +50,7 @@ class Contact:
         grid: Grid,
         basis: Basis,
         periodic_axes: Sequence[int],
+        threads: int,
     ) -> None:
         self.rows = rows
         self.bodies = bodies
@@ -57,7 +58,7 @@ class Contact:
         self.basis = basis
         self.joined = [int(row) for row in np.flatnonzero(np.isin(1 - rows["axis"], periodic_axes))]
         self.near = [self._near(body) for body in bodies]
-        self._gaps = np.empty((len(rows), max(grid.shape)))
+        self._gaps_of_threads = np.empty((threads, len(rows), max(grid.shape)))
 
     def _near(self, body: Body) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Numbers of the points of a body that are near each row, row after row, and where those of each row begin."""
@@ -74,13 +75,15 @@ class Contact:
 
         One array for all steps, shape (rows, nodes along the longer side of the grid).
         """
-        gaps, grid, basis = self._gaps, self.grid, self.basis
-        gaps.fill(math.inf)
+        of_threads, grid, basis = self._gaps_of_threads, self.grid, self.basis
+        of_threads.fill(math.inf)
         for body, (near, starts) in zip(self.bodies, self.near, strict=True):
             if len(near) > 0:
-                points = body.storage, body.point_mass, body.initial_density
                 narrow = _make_narrow(body.precision)
-                narrow(near, starts, self.rows, *points, grid.origin, grid.cell_size, basis.offset, basis.width, gaps)
+                points = body.storage, body.point_mass, body.initial_density
+                on_grid = grid.origin, grid.cell_size, basis.offset, basis.width
+                narrow(near, starts, self.rows, *points, *on_grid, of_threads)
+        gaps: NDArray[np.float64] = of_threads[0]
         for number in self.joined:
             self._join(gaps[number], 1 - int(self.rows[number]["axis"]))
         return gaps
@@ -94,26 +97,36 @@ class Contact:
 
 @cache
 def _make_narrow(precision: str) -> Callable[..., Any]:
-    """A kernel that narrows the gaps along the rows to those of points in a precision."""
+    """A kernel that narrows the gaps along the rows to those of points in a precision; the first thread's hold all."""
     *_, along, density = place_access(precision)
 
-    @njit(error_model="numpy", cache=True)
+    @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{precision}_{CORE_MARK}")
     def narrow(  # type: ignore[no-untyped-def]
-        near, starts, rows, storage, mass, least_density, origin, cell_size, offset, width, gaps
+        near, starts, rows, storage, mass, least_density, origin, cell_size, offset, width, of_threads
     ):
-        inverse_size = 1.0 / cell_size
+        threads, inverse_size, last_first = len(of_threads), 1.0 / cell_size, of_threads.shape[2] - width
         farthest, nothing = 0.5 * width * cell_size, ROUND_OFF * cell_size
-        for number in range(len(rows)):
-            row, nodes = rows[number], gaps[number]
-            start, last_first = origin[1 - row.axis], len(nodes) - width
-            for p in near[starts[number] : starts[number + 1]]:
-                distance = abs(along(storage, row.axis, p) - row.place)
-                if distance < farthest:
-                    gap = distance - 0.5 * np.sqrt(mass / max(density(storage, p), least_density))
-                    gap = gap if gap > nothing else 0.0
-                    first = min(int((along(storage, 1 - row.axis, p) - start) * inverse_size - offset), last_first)
-                    for node in range(first, first + width):
-                        nodes[node] = min(nodes[node], gap)
+        largest_half = 0.5 * np.sqrt(mass / least_density)
+        for thread in prange(threads):
+            for number in range(len(rows)):
+                axis, place, nodes = rows[number].axis, rows[number].place, of_threads[thread, number]
+                start, count = starts[number], starts[number + 1] - starts[number]
+                for p in near[start + count * thread // threads : start + count * (thread + 1) // threads]:
+                    distance = abs(along(storage, axis, p) - place)
+                    if distance < farthest:
+                        beyond = along(storage, 1 - axis, p) - origin[1 - axis]
+                        first = min(int(beyond * inverse_size - offset), last_first)
+                        widest = 0.0
+                        for node in range(first, first + width):
+                            widest = max(widest, nodes[node])
+                        # mostly the layers above the lowest one, which has been already: no root and no division
+                        if widest > max(0.0, distance - largest_half):
+                            gap = distance - 0.5 * np.sqrt(mass / max(density(storage, p), least_density))
+                            gap = gap if gap > nothing else 0.0
+                            for node in range(first, first + width):
+                                nodes[node] = min(nodes[node], gap)
+        for thread in range(1, threads):
+            np.minimum(of_threads[0], of_threads[thread], of_threads[0])
 
     return narrow

@@ -253,7 +253,7 @@ class Simulation:
 
     def _contact(self) -> Contact:
         rows = rows_in_reach(self.walls, self.grid, self.reach)
-        return Contact(rows, self.bodies, self.grid, self.basis, self.periodic_axes)
+        return Contact(rows, self.bodies, self.grid, self.basis, self.periodic_axes, self.threads)
 
     def _take_reports(self, dt: float) -> None:
         reports = [step_report(body.transfer_reports, body.stress_reports) for body in self.bodies]

@@ -9,6 +9,7 @@ threads.
 
 import numpy as np
 from numba import njit, prange
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from materials.compilation import named
@@ -31,15 +32,9 @@ def sort_by_stencil(
     """
     if points.shape[1] == 0:
         return np.empty(0, np.int32), np.zeros(1, np.int64)
-    return _counting_sort(points, *origin, cell_size, basis.offset, basis.width + 1)
-
-
-@njit(cache=True)
-@named(CORE_MARK)
-def _limits(places, origin, cell_size, offset):  # type: ignore[no-untyped-def]
-    """The first of the first nodes along an axis, and the number of those from it to the last."""
-    first = first_node(places.min(), origin, cell_size, offset)
-    return first, first_node(places.max(), origin, cell_size, offset) - first + 1
+    places = points[X : Y + 1]
+    corners = tuple(places.min(axis=1).tolist()), tuple(places.max(axis=1).tolist())
+    return _counting_sort(points, corners, origin, cell_size, basis.offset, basis.width + 1)
 
 
 @njit(cache=True)
@@ -72,19 +67,26 @@ def _equal_parts(before, count):  # type: ignore[no-untyped-def]
     return limits
 
 
+@register_jitable
+def _first_node_of(x, y, origin, cell_size, offset):  # type: ignore[no-untyped-def]
+    """Column and row of the first node of the stencil of a point."""
+    return first_node(x, origin[0], cell_size, offset), first_node(y, origin[1], cell_size, offset)
+
+
 @njit(cache=True)
 @named(CORE_MARK)
-def _counting_sort(points, origin_x, origin_y, cell_size, offset, narrowest):  # type: ignore[no-untyped-def]
+def _counting_sort(points, corners, origin, cell_size, offset, narrowest):  # type: ignore[no-untyped-def]
     count = points.shape[1]
     x, y = points[X], points[Y]
-    first_x, columns = _limits(x, origin_x, cell_size, offset)
-    first_y, rows = _limits(y, origin_y, cell_size, offset)
+    (low_x, low_y), (high_x, high_y) = corners
+    first_x, first_y = _first_node_of(low_x, low_y, origin, cell_size, offset)
+    last_x, last_y = _first_node_of(high_x, high_y, origin, cell_size, offset)
+    columns, rows = last_x - first_x + 1, last_y - first_y + 1
     keys = np.empty(count, np.int32)
     starts = np.zeros(columns * rows + 1, np.int64)
     for p in range(count):
-        i = first_node(x[p], origin_x, cell_size, offset) - first_x
-        j = first_node(y[p], origin_y, cell_size, offset) - first_y
-        keys[p] = i * rows + j
+        i, j = _first_node_of(x[p], y[p], origin, cell_size, offset)
+        keys[p] = (i - first_x) * rows + j - first_y
         starts[keys[p] + 1] += 1
     for key in range(columns * rows):
         starts[key + 1] += starts[key]
@@ -99,15 +101,14 @@ def _counting_sort(points, origin_x, origin_y, cell_size, offset, narrowest):  #
 def reorder(storage: NDArray[np.float64], ids: NDArray[np.int32], first: int, order: NDArray[np.int32]) -> None:
     """Bring points and their ids, from the first of them on, into an order that is counted from there."""
     _reorder(storage, first, order)
-    part = ids[first : first + len(order)]
-    part[:] = part[order]
+    _reorder(ids[np.newaxis], first, order)
 
 
 @njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def _reorder(storage, first, order):  # type: ignore[no-untyped-def]
-    for column in prange(storage.shape[0]):
-        row, found = storage[column, first : first + len(order)], np.empty(len(order), storage.dtype)
+def _reorder(rows, first, order):  # type: ignore[no-untyped-def]
+    for number in prange(rows.shape[0]):
+        row, found = rows[number, first : first + len(order)], np.empty(len(order), rows.dtype)
         for p in range(len(order)):
             # unsigned, so that nothing is done for numbers that count from the end
             found[p] = row[np.uint64(order[p])]

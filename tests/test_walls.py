@@ -92,8 +92,10 @@ def test_a_layer_that_falls_across_periodic_sides_stays_flat():
     assert rows[0, 0] < 0.03
 
 
-def test_the_gap_of_a_node_is_that_of_the_lowest_point_in_its_support():
+@pytest.mark.parametrize("threads", [1, 2])
+def test_the_gap_of_a_node_is_that_of_the_lowest_point_in_its_support(threads):
     case = simulation(BLOCK, {"boundary.bottom": {"kind": "friction", "coefficient": 0.5}})
+    case.threads = threads
     (body,) = case.bodies
     body.points[Y] -= 0.15
 
