@@ -1,6 +1,7 @@
 """A body: the points of one material, their law, and the kernels that were chosen for them."""
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -130,9 +131,10 @@ class Body:
         self._tying_grid_to_points = make_grid_to_points(basis, ties, spreads and ties, self.precision)
         law = pointwise_law(self.law, self._of_law)
         self._stress_pass = make_stress_pass(law, self._keeps_shear_strain, self.precision)
-        no_points = self.storage, 0, 1.0, self._law_parameters()
+        no_points = self.storage, 0, 1.0, self._law_parameters
         explained(self.law, self._stress_pass, *no_points, 0.0, 0.0, 0.0, 1, self.stress_reports[:0])
 
+    @cached_property
     def _law_parameters(self) -> tuple[Any, ...]:
         """The law's parameters as its compiled functions take them."""
         plain = tuple(self.parameters)
@@ -230,7 +232,7 @@ class Body:
         the time constant of the transfer.
         """
         tied, points = tied if self.is_loose else 0.0, (self.storage, self.awake, self.point_mass)
-        self._stress_pass(*points, self._law_parameters(), dt, tied, exchange, threads, self.stress_reports)
+        self._stress_pass(*points, self._law_parameters, dt, tied, exchange, threads, self.stress_reports)
 
     def state(self, name: str) -> NDArray[np.float64]:
         """A state variable of all points, in their present order. Raises InputError for an unknown name."""
