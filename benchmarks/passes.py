@@ -32,6 +32,8 @@ COLUMNS_MOVED = {
     # reads v, L, stress, density; writes stress, density
     "stress": 11 + 5,
 }
+# What single precision adds: the rests of x, y and density, read and written.
+RESTS_MOVED = {"points to grid": 2, "grid to points": 4, "stress": 2}
 STATE_PASSES = ("stress",)
 # Operations per point, for quadratic splines: stencil and weights, what a point brings or receives, then nine nodes of
 # eight components, of which most steps gather four.
@@ -76,9 +78,10 @@ def _floor(name: str, body: Body, roofline: Roofline) -> float | None:
     if name not in COLUMNS_MOVED:
         return None
     columns = COLUMNS_MOVED[name] + (2 * len(body.law.state._fields) if name in STATE_PASSES else 0)
-    bytes_moved = columns * body.points.itemsize
+    rests = RESTS_MOVED[name] if body.precision == "single" else 0
+    bytes_moved = (columns + rests) * body.points.itemsize
     moving = bytes_moved / roofline.bandwidth(body.points.nbytes)
-    return 1e9 * max(moving, OPERATIONS.get(name, 0) / roofline.arithmetic_rate)
+    return 1e9 * max(moving, OPERATIONS.get(name, 0) / roofline.arithmetic_rates[body.precision])
 
 
 @contextmanager

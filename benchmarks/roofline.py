@@ -10,19 +10,20 @@ from numba import njit
 import materials.compilation  # noqa: F401
 from benchmarks.timing import timed
 from materials.elementary import fused
+from materials.precision import PRECISIONS
 
 REPEATS = 7
 LEAST_WORK = 2e8
 CHAIN = 16
-L1_DOUBLES = 1024
+L1_BYTES = 8192
 
 
 @dataclass(frozen=True)
 class Roofline:
-    """Bandwidth [bytes/s] by working set [bytes], and arithmetic rate [1/s]; a multiply-add counts as two."""
+    """Bandwidth [bytes/s] by working set [bytes], arithmetic rate [1/s] by precision; a multiply-add counts as two."""
 
     bandwidths: dict[int, float]
-    arithmetic_rate: float
+    arithmetic_rates: dict[str, float]
 
     def bandwidth(self, working_set: float) -> float:
         """Of a working set of this many bytes, between those measured."""
@@ -56,15 +57,17 @@ def triad_bandwidth(working_set: int) -> float:
     return 24 * length * rounds / min(timed(lambda: _triad(a, b, c, 0.5, rounds)).wall for _ in range(REPEATS))
 
 
-def arithmetic_rate() -> float:
+def arithmetic_rate(precision: str) -> float:
     """Operations/s of independent chains of multiply-adds on data in the first cache, best of several."""
-    x = np.ones(L1_DOUBLES)
-    rounds = int(LEAST_WORK / (2 * CHAIN * L1_DOUBLES))
-    _multiply_adds(x, 0.999, 0.001, 1)
-    best = min(timed(lambda: _multiply_adds(x, 0.999, 0.001, rounds)).wall for _ in range(REPEATS))
-    return 2 * CHAIN * L1_DOUBLES * rounds / best
+    number = PRECISIONS[precision]
+    x, factor, summand = np.ones(L1_BYTES // np.dtype(number).itemsize, number), number(0.999), number(0.001)
+    rounds = int(LEAST_WORK / (2 * CHAIN * len(x)))
+    _multiply_adds(x, factor, summand, 1)
+    best = min(timed(lambda: _multiply_adds(x, factor, summand, rounds)).wall for _ in range(REPEATS))
+    return 2 * CHAIN * len(x) * rounds / best
 
 
 def measured_roofline(working_sets: Iterable[int]) -> Roofline:
     """Measure all; the largest working set should exceed the last cache."""
-    return Roofline({size: triad_bandwidth(size) for size in working_sets}, arithmetic_rate())
+    bandwidths = {size: triad_bandwidth(size) for size in working_sets}
+    return Roofline(bandwidths, {precision: arithmetic_rate(precision) for precision in PRECISIONS})

@@ -23,7 +23,10 @@ def roofline_table(roofline: Roofline) -> Table:
     rows = [
         (f"triad over {size / 2**20:g} MiB", f"{rate / 1e9:.1f} GB/s") for size, rate in roofline.bandwidths.items()
     ]
-    rows.append(("multiply-adds in the first cache", f"{roofline.arithmetic_rate / 1e9:.1f} GFLOP/s"))
+    rows += [
+        (f"multiply-adds in the first cache, {precision}", f"{rate / 1e9:.1f} GFLOP/s")
+        for precision, rate in roofline.arithmetic_rates.items()
+    ]
     return Table("Roofline of one core", ("loop", "rate"), tuple(rows))
 
 

@@ -107,7 +107,6 @@ def _make_narrow(precision: str) -> Callable[..., Any]:
     ):
         threads, inverse_size, last_first = len(of_threads), 1.0 / cell_size, of_threads.shape[2] - width
         farthest, nothing = 0.5 * width * cell_size, ROUND_OFF * cell_size
-        largest_half = 0.5 * np.sqrt(mass / least_density)
         for thread in prange(threads):
             for number in range(len(rows)):
                 axis, place, nodes = rows[number].axis, rows[number].place, of_threads[thread, number]
@@ -117,15 +116,10 @@ def _make_narrow(precision: str) -> Callable[..., Any]:
                     if distance < farthest:
                         beyond = along(storage, 1 - axis, p) - origin[1 - axis]
                         first = min(int(beyond * inverse_size - offset), last_first)
-                        widest = 0.0
+                        gap = distance - 0.5 * np.sqrt(mass / max(density(storage, p), least_density))
+                        gap = gap if gap > nothing else 0.0
                         for node in range(first, first + width):
-                            widest = max(widest, nodes[node])
-                        # mostly the layers above the lowest one, which has been already: no root and no division
-                        if widest > max(0.0, distance - largest_half):
-                            gap = distance - 0.5 * np.sqrt(mass / max(density(storage, p), least_density))
-                            gap = gap if gap > nothing else 0.0
-                            for node in range(first, first + width):
-                                nodes[node] = min(nodes[node], gap)
+                            nodes[node] = min(nodes[node], gap)
         for thread in range(1, threads):
             np.minimum(of_threads[0], of_threads[thread], of_threads[0])
 

@@ -57,7 +57,7 @@ def test_the_yardstick_is_no_straw_man_and_comes_to_the_pile_of_the_library():
 
 
 def test_bandwidth_between_measured_sizes():
-    roofline = Roofline({2**20: 100.0, 2**24: 20.0}, 1.0)
+    roofline = Roofline({2**20: 100.0, 2**24: 20.0}, {"double": 1.0})
     assert roofline.bandwidth(2**20) == 100.0
     assert roofline.bandwidth(2**22) == pytest.approx(60.0)
     assert roofline.bandwidth(2**30) == 20.0
