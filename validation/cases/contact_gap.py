@@ -43,7 +43,8 @@ class WithoutGaps(Simulation):
     def find_reach(self) -> None:
         """Find the nodes in reach, and forget the points near walls."""
         super().find_reach()
-        self.contact = FeltAtOnce(self.contact.rows, self.bodies, self.grid, self.basis, self.periodic_axes)
+        walls = self.contact.rows
+        self.contact = FeltAtOnce(walls, self.bodies, self.grid, self.basis, self.periodic_axes, self.threads)
 
 
 def block(law: str, cell: float, lower: float, kind: type[Simulation], velocity: float = 0.0) -> Simulation:
