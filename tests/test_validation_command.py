@@ -26,6 +26,7 @@ SMALL_SCENES = (
     "leaving_the_domain",
     "floor_friction_range",
     "turned_scene",
+    "contact_gap",
 )
 
 
