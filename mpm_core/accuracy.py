@@ -39,17 +39,21 @@ ACCURACIES = ("10%", "3%", "1%")
 def with_settings_for_accuracy(content: Any) -> Any:
     """The tables of a scene, with what it leaves open of cell size, points and step filled in where `accuracy` asks.
 
-    Raises ValueError for an accuracy that was not reached with a law of the scene, and where no cell size divides the
-    domain. What is not well-formed is left to the validation of the scene.
+    Raises ValueError for an accuracy that was not reached with a law of the scene, where its cells would be finer than
+    the grains, and where no cell size divides the domain. What is not well-formed is left to the validation of the
+    scene.
     """
     if not isinstance(content, Mapping) or content.get("accuracy") not in ACCURACIES:
         return content
     grid, time = content.get("grid"), content.get("time")
-    width = _narrowest_width(content.get("body"))
-    if not isinstance(grid, Mapping) or not isinstance(time, Mapping) or width is None:
+    width, materials = _narrowest_width(content.get("body")), _materials(content)
+    if not isinstance(grid, Mapping) or not isinstance(time, Mapping) or width is None or not materials:
         return content
-    preset = _strictest(content["accuracy"], _kinds(content))
-    cell_size = grid.get("cell_size") or _cell_size(grid, width / preset.cells_across)
+    preset = _strictest(content["accuracy"], [_kind(*one) for one in materials.items()])
+    cell_size = grid.get("cell_size")
+    if not cell_size:
+        cell_size = _cell_size(grid, width / preset.cells_across)
+        _refuse_cells_finer_than_grains(content["accuracy"], cell_size, materials.values())
     return {
         "precision": "single",
         **content,
@@ -59,18 +63,18 @@ def with_settings_for_accuracy(content: Any) -> Any:
     }
 
 
-def _kinds(content: Mapping[str, Any]) -> list[str]:
-    """Of each material of a scene the name of its law, and of clay how it is consolidated.
-
-    Overconsolidated clay softens as it fails, so that its runout depends on the cells in another way.
-    """
+def _materials(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """The tables of the materials of a scene by name, as far as they are well-formed."""
     materials = content.get("material")
-    if not isinstance(materials, Mapping):
-        return []
-    return [_kind(name, table) for name, table in materials.items() if isinstance(table, Mapping)]
+    found = materials.items() if isinstance(materials, Mapping) else ()
+    return {name: table for name, table in found if isinstance(table, Mapping)}
 
 
 def _kind(name: str, table: Mapping[str, Any]) -> str:
+    """The name of a material's law, and of clay how it is consolidated.
+
+    Overconsolidated clay softens as it fails, so that its runout depends on the cells in another way.
+    """
     law, ratio = str(table.get("law", name)), table.get("overconsolidation_ratio")
     return f"{law}, overconsolidation_ratio {ratio:g}" if isinstance(ratio, int | float) else law
 
@@ -89,6 +93,17 @@ def _strictest(accuracy: str, kinds: Iterable[str]) -> Preset:
         max(found.points_per_cell for found in presets),
         min(found.safety for found in presets),
     )
+
+
+def _refuse_cells_finer_than_grains(accuracy: str, cell_size: float, materials: Iterable[Mapping[str, Any]]) -> None:
+    """Below a grain diameter piles of mu(I)-LC came out up to 14 % lower, so that no grid kept to any accuracy."""
+    diameters = [table.get("grain_diameter") for table in materials]
+    largest = max((float(found) for found in diameters if isinstance(found, int | float)), default=0.0)
+    if cell_size < largest * (1.0 - 1e-9):
+        raise ValueError(
+            f"accuracy = '{accuracy}' takes cells of {cell_size:.3g} m, finer than the grains of "
+            f"{largest:g} m, with which it was not reached; state grid.cell_size and time.safety instead"
+        )
 
 
 def _with_points(body: Mapping[str, Any], points_per_cell: int) -> dict[str, Any]:

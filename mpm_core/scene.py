@@ -204,7 +204,7 @@ class Scene(Section):
         default=None,
         description="sets grid.cell_size, time.safety, body.points_per_cell and precision where the scene does not, to "
         "what kept runout, height and centre of mass of column collapses within this of finer grids with 16 points per "
-        "cell",
+        "cell; refused where that was not reached, and for cells finer than the grains",
     )
     precision: Literal["double", "single"] = Field(
         default="double",

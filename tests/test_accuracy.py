@@ -34,8 +34,17 @@ def test_normally_consolidated_clay_has_settings_of_its_own():
             "with modified_cam_clay, overconsolidation_ratio 4; state grid.cell_size and time.safety instead",
         ),
         ({"accuracy": "10%", "grid.cell_size": None, "grid.upper": [3.1, 1.037]}, "divide the domain"),
+        (
+            {"accuracy": "3%", "grid.cell_size": None, "material.mu_i_lc.grain_diameter": 0.007},
+            "cells of 0.00625 m, finer than the grains of 0.007 m",
+        ),
     ],
 )
 def test_what_no_grid_reached_is_refused(changes, message):
     with pytest.raises(InputError, match=message):
         Scene.from_dict(changed(COLUMN, changes))
+
+
+def test_a_scene_without_material_is_told_so():
+    with pytest.raises(InputError, match="material"):
+        Scene.from_dict(changed(COLUMN, {"accuracy": "10%", "material": None}))
