@@ -52,9 +52,9 @@ class Basis:
 
 
 @register_jitable
-def first_node(place, origin, cell_size, offset):  # type: ignore[no-untyped-def]
-    """Number of the first node of the stencil of a point along an axis; places lie beyond the origin by the offset."""
-    return int((place - origin) / cell_size - offset)
+def first_node(x, y, origin, cell_size, offset):  # type: ignore[no-untyped-def]
+    """Column and row of the first node of the stencil of a point, which lies beyond the origin by the offset."""
+    return int((x - origin[0]) / cell_size - offset), int((y - origin[1]) / cell_size - offset)
 
 
 @register_jitable

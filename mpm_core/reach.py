@@ -82,7 +82,7 @@ def _extend(x, y, origin, cell_size, offset, width, first_rows, last_rows):  # t
     columns = len(first_rows)
     lowest, highest = np.full(columns, np.int64(2**31)), np.full(columns, np.int64(-1))
     for p in range(len(x)):
-        i, j = first_node(x[p], origin[0], cell_size, offset), first_node(y[p], origin[1], cell_size, offset)
+        i, j = first_node(x[p], y[p], origin, cell_size, offset)
         lowest[i], highest[i] = min(lowest[i], j), max(highest[i], j)
     for i in range(columns):
         if highest[i] >= 0:

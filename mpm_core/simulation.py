@@ -129,7 +129,7 @@ class Simulation:
         self.smallest_step = self.scene.time.smallest_step or (SMALLEST_SHARE * first if first < math.inf else 0.0)
 
     def measure_signals(self) -> None:
-        """Take what bounds the step from the points as they are: at the start, and where a program has moved them."""
+        """Take what bounds the step from the points as they are, where a program has moved them."""
         self._take_signals(self._signals_of_points())
 
     def _signals_of_points(self) -> list[tuple[float, float]]:

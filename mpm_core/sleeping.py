@@ -179,7 +179,7 @@ def _stir_nodes(withheld, waking_squared, reach, stirred):  # type: ignore[no-un
 def _stir_points(x, y, origin, cell_size, offset, width, stirred):  # type: ignore[no-untyped-def]
     """Mark what is around points."""
     for p in range(len(x)):
-        i, j = first_node(x[p], origin[0], cell_size, offset), first_node(y[p], origin[1], cell_size, offset)
+        i, j = first_node(x[p], y[p], origin, cell_size, offset)
         stirred[max(0, i - RING) : i + width + RING, max(0, j - RING) : j + width + RING] = True
 
 
@@ -188,6 +188,6 @@ def _stir_points(x, y, origin, cell_size, offset, width, stirred):  # type: igno
 def _touched(x, y, origin, cell_size, offset, width, stirred):  # type: ignore[no-untyped-def]
     touched = np.empty(len(x), np.bool_)
     for p in range(len(x)):
-        i, j = first_node(x[p], origin[0], cell_size, offset), first_node(y[p], origin[1], cell_size, offset)
+        i, j = first_node(x[p], y[p], origin, cell_size, offset)
         touched[p] = stirred[i : i + width, j : j + width].any()
     return touched

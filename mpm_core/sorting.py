@@ -9,7 +9,6 @@ threads.
 
 import numpy as np
 from numba import njit, prange
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from materials.compilation import named
@@ -67,25 +66,19 @@ def _equal_parts(before, count):  # type: ignore[no-untyped-def]
     return limits
 
 
-@register_jitable
-def _first_node_of(x, y, origin, cell_size, offset):  # type: ignore[no-untyped-def]
-    """Column and row of the first node of the stencil of a point."""
-    return first_node(x, origin[0], cell_size, offset), first_node(y, origin[1], cell_size, offset)
-
-
 @njit(cache=True)
 @named(CORE_MARK)
 def _counting_sort(points, corners, origin, cell_size, offset, narrowest):  # type: ignore[no-untyped-def]
     count = points.shape[1]
     x, y = points[X], points[Y]
     (low_x, low_y), (high_x, high_y) = corners
-    first_x, first_y = _first_node_of(low_x, low_y, origin, cell_size, offset)
-    last_x, last_y = _first_node_of(high_x, high_y, origin, cell_size, offset)
+    first_x, first_y = first_node(low_x, low_y, origin, cell_size, offset)
+    last_x, last_y = first_node(high_x, high_y, origin, cell_size, offset)
     columns, rows = last_x - first_x + 1, last_y - first_y + 1
     keys = np.empty(count, np.int32)
     starts = np.zeros(columns * rows + 1, np.int64)
     for p in range(count):
-        i, j = _first_node_of(x[p], y[p], origin, cell_size, offset)
+        i, j = first_node(x[p], y[p], origin, cell_size, offset)
         keys[p] = (i - first_x) * rows + j - first_y
         starts[keys[p] + 1] += 1
     for key in range(columns * rows):

@@ -11,7 +11,7 @@ from test_laws_compiled import random_strain_rates, start
 from benchmarks.columns import advance_to
 from materials import InputError, SymmetricTensor, registry
 from materials.compilation import make_single_step, pointwise_law
-from materials.precision import PRECISIONS
+from materials.precision import PRECISIONS, as_numbers
 from materials.single_precision import in_single, nearest_single
 from mpm_core.columns import SXX
 from mpm_core.observables import pile_shape
@@ -28,10 +28,6 @@ COLUMN_OF_CLAY = changed(COLUMN, {"material": {"modified_cam_clay": CAM_CLAY}, "
 def compiled(law, precision):
     step, number = make_single_step(pointwise_law(law, precision)), PRECISIONS[precision]
     return lambda *arguments: step(*(as_numbers(argument, number) for argument in arguments))
-
-
-def as_numbers(value, number):
-    return type(value)(*map(number, value)) if isinstance(value, tuple) else number(value)
 
 
 def largest_difference(name, steps=400, pressure=1e4):

@@ -13,6 +13,7 @@ from numba import njit, typeof, types
 
 from materials import SymmetricTensor, isotropic, scaled
 from materials.compilation import PointwiseLaw, explained, make_single_step, named, pointwise_law
+from materials.precision import as_numbers
 from validation.conformance.outcome import Outcome, judged
 from validation.conformance.subject import DT, PointState, Subject, flowing_strain_rates
 
@@ -83,18 +84,10 @@ def single(subject: Subject) -> Outcome:
     step, worst = make_single_step(pointwise_law(subject.law, "single")), 0.0
     for start, strain_rate, dt, end in subject.calls:
         point = start.stress, strain_rate, end.density, start.state, subject.parameters, dt
-        found, _ = explained(subject.law, step, *map(_as_singles, point))
+        found, _ = explained(subject.law, step, *(as_numbers(value, np.float32) for value in point))
         scale = max(subject.pressure, *map(abs, end.stress))
         worst = max(worst, *(abs(a - b) / scale for a, b in zip(found, end.stress, strict=True)))
     return judged(worst < LARGEST_DIFFERENCE, f"{worst:.1e} of the stress, allowed: {LARGEST_DIFFERENCE:g}")
-
-
-def _as_singles(value: Any) -> Any:
-    """A number, or the NamedTuple of numbers, in single precision."""
-    if not isinstance(value, tuple):
-        return np.float32(value)
-    kind: Any = type(value)
-    return kind(*map(np.float32, value))
 
 
 def ptx(subject: Subject) -> Outcome:
