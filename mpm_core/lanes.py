@@ -132,14 +132,14 @@ def _twice_at(typing_context: Any, array: Any, position: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         values, place = arguments
         half = load(context, builder, signature.args[0], values, place, LANES)
-        return converted(builder, shuffled(builder, half, half, [*range(LANES), *range(LANES)]), types.float32)
+        return shuffled(builder, half, half, [*range(LANES), *range(LANES)])
 
-    return LanesType(types.float32, 2 * LANES)(array, position), generate
+    return LanesType(array.dtype, 2 * LANES)(array, position), generate
 
 
 @intrinsic
 def _two_numbers(typing_context: Any, first: Any, second: Any) -> Any:
-    kind = LanesType(types.float32, 2 * LANES)
+    kind = LanesType(first, 2 * LANES)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         vector = ir.Constant(vector_of(kind), ir.Undefined)
@@ -147,7 +147,7 @@ def _two_numbers(typing_context: Any, first: Any, second: Any) -> Any:
             vector = builder.insert_element(vector, number, ir.Constant(INDEX, lane))
         return shuffled(builder, vector, vector, [0] * LANES + [1] * LANES)
 
-    return kind(types.float32, types.float32), generate
+    return kind(first, first), generate
 
 
 def _half(number: int) -> Any:
@@ -276,13 +276,13 @@ def half_oct_at(array: Any, position: Any) -> Any:
 
 @register_jitable(forceinline=True)
 def twice_at(array: Any, position: Any) -> Any:
-    """The four numbers from a position on, and the same again, as singles."""
+    """The four numbers from a position on, and the same again, as they are stored."""
     return _twice_at(array, position)  # type: ignore[call-arg]
 
 
 @register_jitable(forceinline=True)
 def two_numbers(first: Any, second: Any) -> Any:
-    """Four times one single and four times another."""
+    """Four times one number and four times another."""
     return _two_numbers(first, second)  # type: ignore[call-arg]
 
 
