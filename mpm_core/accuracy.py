@@ -1,4 +1,4 @@
-"""Settings for a stated accuracy: cell size, points per cell, safety factor, precision: a scene need not choose them.
+"""Settings for a stated accuracy: cells, points, step, precision, transfer: a scene need not choose them.
 
 `grainlaw validate speed_error` measured how runout, height of the pile and height of the centre of mass of column
 collapses differ from their mean on finer grids, over cell size, step, transfer and shape functions. Here stands, for
@@ -22,22 +22,35 @@ FINEST_SHARE = 0.5
 
 @dataclass(frozen=True)
 class Preset:
-    """Cells across the narrowest body, material points per cell, and fraction of the stable step."""
+    """What a scene is run with.
+
+    cells_across     cells across the narrowest body, at least
+    points_per_cell  material points per cell
+    safety           fraction of the stable step
+    grains_per_cell  grain diameters that a cell is wide, at most
+    memory           `transfer.time_constant` over the cell size [s/m]; None for that of the scene
+    """
 
     cells_across: int
     points_per_cell: int
     safety: float
+    grains_per_cell: float = math.inf
+    memory: float | None = None
 
 
 PRESETS: dict[str, dict[str, Preset]] = {
-    "mu_i_lc": {"10%": Preset(8, 16, 0.4), "3%": Preset(48, 16, 0.4)},
+    "mu_i_lc": {
+        "10%": Preset(8, 16, 0.4),
+        "3%": Preset(48, 16, 0.4, grains_per_cell=1.4, memory=0.1),
+        "1%": Preset(48, 16, 0.4, grains_per_cell=1.0, memory=0.1),
+    },
     "modified_cam_clay, overconsolidation_ratio 1": {"10%": Preset(48, 4, 0.4)},
 }
 ACCURACIES = ("10%", "3%", "1%")
 
 
 def with_settings_for_accuracy(content: Any) -> Any:
-    """The tables of a scene, with what it leaves open of cell size, points and step filled in where `accuracy` asks.
+    """The tables of a scene, with what it leaves open of the settings filled in where `accuracy` asks for it.
 
     Raises ValueError for an accuracy that was not reached with a law of the scene, where its cells would be finer than
     the grains, and where no cell size divides the domain. What is not well-formed is left to the validation of the
@@ -52,13 +65,16 @@ def with_settings_for_accuracy(content: Any) -> Any:
     preset = _strictest(content["accuracy"], [_kind(*one) for one in materials.items()])
     cell_size = grid.get("cell_size")
     if not cell_size:
-        cell_size = _cell_size(grid, width / preset.cells_across)
-        _refuse_cells_finer_than_grains(content["accuracy"], cell_size, materials.values())
+        diameters = _grain_diameters(materials.values())
+        largest = width / preset.cells_across
+        _refuse_cells_finer_than_grains(content["accuracy"], largest, diameters)
+        cell_size = _cell_size(grid, min(largest, preset.grains_per_cell * min(diameters, default=math.inf)))
     return {
         "precision": "single",
         **content,
         "grid": {**grid, "cell_size": cell_size},
         "time": {"safety": preset.safety, **time},
+        "transfer": _with_memory(content.get("transfer", {}), preset, cell_size),
         "body": [_with_points(body, preset.points_per_cell) for body in content["body"]],
     }
 
@@ -92,18 +108,32 @@ def _strictest(accuracy: str, kinds: Iterable[str]) -> Preset:
         max(found.cells_across for found in presets),
         max(found.points_per_cell for found in presets),
         min(found.safety for found in presets),
+        min(found.grains_per_cell for found in presets),
+        min((found.memory for found in presets if found.memory is not None), default=None),
     )
 
 
-def _refuse_cells_finer_than_grains(accuracy: str, cell_size: float, materials: Iterable[Mapping[str, Any]]) -> None:
-    """Below a grain diameter piles of mu(I)-LC came out up to 14 % lower, so that no grid kept to any accuracy."""
+def _grain_diameters(materials: Iterable[Mapping[str, Any]]) -> list[float]:
+    """Those that the tables of the materials state [m]."""
     diameters = [table.get("grain_diameter") for table in materials]
-    largest = max((float(found) for found in diameters if isinstance(found, int | float)), default=0.0)
+    return [float(found) for found in diameters if isinstance(found, int | float) and found > 0.0]
+
+
+def _refuse_cells_finer_than_grains(accuracy: str, cell_size: float, diameters: Iterable[float]) -> None:
+    """Of bodies only so many grains wide the settings are not known to keep to any accuracy."""
+    largest = max(diameters, default=0.0)
     if cell_size < largest * (1.0 - 1e-9):
         raise ValueError(
-            f"accuracy = '{accuracy}' takes cells of {cell_size:.3g} m, finer than the grains of "
-            f"{largest:g} m, with which it was not reached; state grid.cell_size and time.safety instead"
+            f"accuracy = '{accuracy}' takes cells of {cell_size:.3g} m for the narrowest body, finer than the grains "
+            f"of {largest:g} m, with which it was not reached; state grid.cell_size and time.safety instead"
         )
+
+
+def _with_memory(transfer: Any, preset: Preset, cell_size: Any) -> Any:
+    """The table of the transfer, with a time constant that follows the cell size where the preset has one."""
+    if preset.memory is None or not isinstance(transfer, Mapping) or not isinstance(cell_size, int | float):
+        return transfer
+    return {"time_constant": preset.memory * cell_size, **transfer}
 
 
 def _with_points(body: Mapping[str, Any], points_per_cell: int) -> dict[str, Any]:

@@ -19,6 +19,17 @@ def test_it_sets_what_the_scene_leaves_open():
     assert exact.precision == "double"
 
 
+@pytest.mark.parametrize(("accuracy", "cell_size"), [("3%", 0.3 / 48), ("1%", 0.005)])
+def test_fine_settings_follow_the_grains_and_let_the_transfer_follow_the_cells(accuracy, cell_size):
+    scene = Scene.from_dict(changed(COLUMN, {"accuracy": accuracy, "grid.cell_size": None}))
+    assert scene.grid.cell_size == pytest.approx(cell_size)
+    assert scene.transfer.time_constant == pytest.approx(0.1 * cell_size)
+    on_stated_cells = Scene.from_dict(changed(COLUMN, {"accuracy": accuracy, "grid.cell_size": 0.0125}))
+    assert on_stated_cells.transfer.time_constant == pytest.approx(0.00125)
+    stated = Scene.from_dict(changed(COLUMN, {"accuracy": accuracy, "transfer.time_constant": 0.02}))
+    assert stated.transfer.time_constant == 0.02
+
+
 def test_normally_consolidated_clay_has_settings_of_its_own():
     clay = {"material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"}
     scene = Scene.from_dict(changed(COLUMN, {**clay, "accuracy": "10%", "grid.cell_size": None}))
@@ -28,7 +39,10 @@ def test_normally_consolidated_clay_has_settings_of_its_own():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"accuracy": "1%"}, "not reached on any grid with mu_i_lc; allowed: 10%, 3%"),
+        (
+            {"accuracy": "1%", "material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"},
+            "not reached on any grid with modified_cam_clay, overconsolidation_ratio 1; allowed: 10%",
+        ),
         (
             {"accuracy": "10%", "material": {"modified_cam_clay": SOFTENING}, "body.0.material": "modified_cam_clay"},
             "with modified_cam_clay, overconsolidation_ratio 4; state grid.cell_size and time.safety instead",
@@ -36,7 +50,7 @@ def test_normally_consolidated_clay_has_settings_of_its_own():
         ({"accuracy": "10%", "grid.cell_size": None, "grid.upper": [3.1, 1.037]}, "divide the domain"),
         (
             {"accuracy": "3%", "grid.cell_size": None, "material.mu_i_lc.grain_diameter": 0.007},
-            "cells of 0.00625 m, finer than the grains of 0.007 m",
+            "cells of 0.00625 m for the narrowest body, finer than the grains of 0.007 m",
         ),
     ],
 )

@@ -17,10 +17,15 @@ from validation.speed_error.sweep import REFERENCE_CELLS, references, settings
 FOLDER = Path("runs/speed_error")
 # (material, accuracy, column on which it was not chosen)
 PROMISES = {
-    Effort.QUICK: (("mu(I)-LC", "10%", "middle"),),
-    Effort.FULL: (("mu(I)-LC", "10%", "middle"), ("mu(I)-LC", "3%", "middle"), ("MCC OCR 1", "10%", "square")),
+    Effort.QUICK: (("mu(I)-LC", "10%", "square"),),
+    Effort.FULL: (
+        ("mu(I)-LC", "10%", "square"),
+        ("mu(I)-LC", "3%", "square"),
+        ("mu(I)-LC", "1%", "square"),
+        ("MCC OCR 1", "10%", "square"),
+    ),
 }
-CELLS_OF_REFERENCE = {Effort.QUICK: (1.0 / 60.0, 1.0 / 70.0), Effort.FULL: REFERENCE_CELLS}
+COARSE_REFERENCE = (1.0 / 60.0, 1.0 / 70.0)
 
 COARSE_CELL = 0.1
 
@@ -32,7 +37,8 @@ def measured(effort: Effort, cell_size: float | None = None) -> tuple[Measuremen
     """The observables of each column with the cells of an accuracy against those on the finest ones."""
     found = []
     for material, accuracy, column in PROMISES[effort]:
-        fine = mean_outcome(references(material, column, CELLS_OF_REFERENCE[effort]))
+        cells = COARSE_REFERENCE if effort is Effort.QUICK else REFERENCE_CELLS[material]
+        fine = mean_outcome(references(material, column, cells))
         (outcome,) = outcomes(FOLDER, (promised_setting(material, accuracy, column, cell_size),)).values()
         name, band = f"largest error, {material}, accuracy = {accuracy}", float(accuracy.rstrip("%")) / 100.0
         found.append(upper_bound(name, "1", error(outcome, fine), band))
@@ -47,7 +53,7 @@ def promised_setting(material: str, accuracy: str, column: str, cell_size: float
     changes = {"accuracy": accuracy, "body.0.shape": shape, **left_open}
     scene = Scene.load(FOLDER_OF_SCENES / f"{SCENES[material]}.toml", changes)
     chosen = scene.grid.cell_size, scene.body[0].points_per_cell, scene.time.safety
-    return Setting(material, column, *chosen, precision=scene.precision)
+    return Setting(material, column, *chosen, precision=scene.precision, time_constant=scene.transfer.time_constant)
 
 
 def mean_outcome(fine: Iterable[Setting]) -> dict[str, float]:
@@ -79,7 +85,7 @@ def measure(effort: Effort) -> Evidence:
 
 def costs_of_collapse(material: str, found: Mapping[Setting, Outcome | None]) -> Costs:
     """Of the paper's column with all settings that do not break down."""
-    fine = mean_outcome(references(material, "paper"))
+    fine = mean_outcome(references(material, "paper", REFERENCE_CELLS[material]))
     return {
         setting.key: (outcome.cpu_time, error(outcome, fine))
         for setting, outcome in found.items()

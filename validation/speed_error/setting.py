@@ -16,8 +16,8 @@ END = 1.5
 # Before the clock starts: kernels are compiled or loaded.
 WARM_UP_STEPS = 2
 
-# Lower left and upper right corner of the column [m]. Defaults were chosen on the first two, for Cam Clay on the third
-# too; the next one shows whether they keep their word.
+# Lower left and upper right corner of the column [m]. Defaults were chosen on the first three; the last one shows
+# whether they keep their word.
 COLUMNS: dict[str, tuple[list[float], list[float]]] = {
     "paper": ([1.45, 0.0], [1.75, 0.9]),
     "low": ([1.3, 0.0], [1.9, 0.4]),
@@ -31,7 +31,10 @@ OBSERVABLES = ("runout", "height", "center")
 
 @dataclass(frozen=True, order=True)
 class Setting:
-    """One run: material, column, and what may be chosen for the sake of speed; `cell_size` in m."""
+    """One run: material, column, and what may be chosen for the sake of speed.
+
+    `cell_size` in m; `time_constant` of the transfer in s.
+    """
 
     material: str
     column: str
@@ -41,12 +44,13 @@ class Setting:
     scheme: str = "affine_flip"
     basis: str = "quadratic"
     precision: str = "double"
+    time_constant: float = 0.01
 
     @property
     def key(self) -> str:
         """A name for files."""
         sizes = f"{self.cell_size:.6g}", f"{self.points_per_cell}", f"{self.safety:g}"
-        words = (self.material, self.column, *sizes, self.scheme, self.basis, self.precision)
+        words = (self.material, self.column, *sizes, self.scheme, self.basis, self.precision, f"{self.time_constant:g}")
         return "-".join("".join(c for c in word if c.isalnum() or c in "._") for word in words)
 
     @property
@@ -60,6 +64,7 @@ class Setting:
             "time.safety": self.safety,
             "transfer.scheme": self.scheme,
             "transfer.basis": self.basis,
+            "transfer.time_constant": self.time_constant,
         }
 
 

@@ -1,6 +1,7 @@
 """Which settings are compared, and against what."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import product
 
 from validation.speed_error.setting import Setting
@@ -12,8 +13,15 @@ POINTS_PER_CELL = (4, 9, 16)
 # On these all combinations are cheap; on the finer ones only one choice at a time departs from the defaults.
 COARSE_CELLS = (0.05, 0.025)
 FINE_CELL = 0.0125
-# The place of a shear band on the grid scatters a pile by one per cent however fine the grid is; a mean scatters less.
-REFERENCE_CELLS = (1.0 / 120.0, 1.0 / 140.0, 1.0 / 160.0)
+# Of the rate-independent clay no finer grid is closer to the others.
+REFERENCE_CELLS = {
+    "mu(I)-LC": (1.0 / 200.0, 1.0 / 220.0, 1.0 / 240.0),
+    "MCC OCR 1": (1.0 / 120.0, 1.0 / 140.0, 1.0 / 160.0),
+    "MCC OCR 4": (1.0 / 120.0, 1.0 / 140.0, 1.0 / 160.0),
+}
+# With time constants that follow the cell size, at this share of it [s/m], mu(I)-LC converges.
+SHORT_MEMORY = {"mu(I)-LC": 0.1}
+CELLS_OF_SHORT_MEMORY = (*COARSE_CELLS, FINE_CELL, 1.0 / 120.0, 1.0 / 160.0, 1.0 / 200.0)
 
 
 def settings(material: str, column: str = "paper") -> list[Setting]:
@@ -22,12 +30,21 @@ def settings(material: str, column: str = "paper") -> list[Setting]:
         Setting(material, column, *values)
         for values in product(COARSE_CELLS, POINTS_PER_CELL, SAFETIES, SCHEMES, BASES)
     ]
-    return [*found, *_one_at_a_time(material, column, FINE_CELL)]
+    cells_of_short_memory = CELLS_OF_SHORT_MEMORY if material in SHORT_MEMORY else ()
+    short = [_of_finest_kind(material, column, cell_size) for cell_size in cells_of_short_memory]
+    return [*found, *_one_at_a_time(material, column, FINE_CELL), *short]
 
 
-def references(material: str, column: str, cells: Sequence[float] = REFERENCE_CELLS) -> list[Setting]:
-    """The finest grids with the most points, against the mean of which errors are counted."""
-    return [Setting(material, column, cell_size) for cell_size in cells]
+def references(material: str, column: str, cells: Sequence[float]) -> list[Setting]:
+    """Grids with the most points, against the mean of which errors are counted."""
+    return [_of_finest_kind(material, column, cell_size) for cell_size in cells]
+
+
+def _of_finest_kind(material: str, column: str, cell_size: float) -> Setting:
+    """The transfer of the reference on other cells."""
+    setting = Setting(material, column, cell_size)
+    memory = SHORT_MEMORY.get(material)
+    return setting if memory is None else replace(setting, time_constant=memory * cell_size)
 
 
 def _one_at_a_time(material: str, column: str, cell_size: float) -> Iterator[Setting]:
