@@ -35,11 +35,12 @@ def plan(
         "nodes in reach of the material": f"{planned.nodes_in_reach:,}",
         "memory": f"{planned.memory_bytes / 1e6:.0f} MB, all included; {planned.bytes_per_point:.0f} bytes per point "
         "in arrays",
-        "basis, transfer": f"{scene.transfer.basis}, {scene.transfer.scheme}",
+        "basis, transfer": f"{scene.transfer.basis}, {scene.transfer.scheme}, "
+        f"time constant {scene.transfer.time_constant:g} s",
         "time step": f"{planned.step:.3g} s at the start (stable: {planned.stable_step:.3g} s)",
         "steps": f"about {planned.steps:,}",
         "rate": f"{planned.points / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "
-        f"{planned.threads} threads",
+        f"{planned.threads} thread{'s' if planned.threads > 1 else ''}",
         "expected duration": f"{planned.wall_time:.1f} s, of which output {planned.output_time:.1f} s",
         "frames": f"{planned.frames}",
         "fields of a frame": ", ".join(planned.fields),

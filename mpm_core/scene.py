@@ -202,9 +202,9 @@ class Scene(Section):
     title: str = Field(default="", description="one line for reports")
     accuracy: Literal["10%", "3%", "1%"] | None = Field(
         default=None,
-        description="sets grid.cell_size, time.safety, body.points_per_cell and precision where the scene does not, to "
-        "what kept runout, height and centre of mass of column collapses within this of finer grids with 16 points per "
-        "cell; refused where that was not reached, and for cells finer than the grains",
+        description="sets grid.cell_size, time.safety, body.points_per_cell, transfer.time_constant and precision "
+        "where the scene does not, to what kept runout, height and centre of mass of column collapses within this of "
+        "finer grids with 16 points per cell; refused where that was not reached, and for bodies few grains wide",
     )
     precision: Literal["double", "single"] = Field(
         default="double",
