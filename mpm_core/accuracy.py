@@ -27,22 +27,22 @@ class Preset:
     cells_across     cells across the narrowest body, at least
     points_per_cell  material points per cell
     safety           fraction of the stable step
-    grains_per_cell  grain diameters that a cell is wide, at most
+    cells_along      cells along the edge of a square as large as the smallest body, at least
     memory           `transfer.time_constant` over the cell size [s/m]; None for that of the scene
     """
 
     cells_across: int
     points_per_cell: int
     safety: float
-    grains_per_cell: float = math.inf
+    cells_along: int = 0
     memory: float | None = None
 
 
 PRESETS: dict[str, dict[str, Preset]] = {
     "mu_i_lc": {
         "10%": Preset(8, 16, 0.4),
-        "3%": Preset(48, 16, 0.4, grains_per_cell=1.4, memory=0.1),
-        "1%": Preset(48, 16, 0.4, grains_per_cell=1.0, memory=0.1),
+        "3%": Preset(48, 16, 0.4, cells_along=68, memory=0.1),
+        "1%": Preset(48, 16, 0.4, cells_along=88, memory=0.1),
     },
     "modified_cam_clay, overconsolidation_ratio 1": {"10%": Preset(48, 4, 0.4)},
 }
@@ -59,16 +59,14 @@ def with_settings_for_accuracy(content: Any) -> Any:
     if not isinstance(content, Mapping) or content.get("accuracy") not in ACCURACIES:
         return content
     grid, time = content.get("grid"), content.get("time")
-    width, materials = _narrowest_width(content.get("body")), _materials(content)
-    if not isinstance(grid, Mapping) or not isinstance(time, Mapping) or width is None or not materials:
+    boxes, materials = _boxes(content.get("body")), _materials(content)
+    if not isinstance(grid, Mapping) or not isinstance(time, Mapping) or not boxes or not materials:
         return content
     preset = _strictest(content["accuracy"], [_kind(*one) for one in materials.items()])
     cell_size = grid.get("cell_size")
     if not cell_size:
-        diameters = _grain_diameters(materials.values())
-        largest = width / preset.cells_across
-        _refuse_cells_finer_than_grains(content["accuracy"], largest, diameters)
-        cell_size = _cell_size(grid, min(largest, preset.grains_per_cell * min(diameters, default=math.inf)))
+        cell_size = _cell_size(grid, _largest_cell(boxes, preset))
+        _refuse_cells_finer_than_grains(content["accuracy"], cell_size, materials.values())
     return {
         "precision": "single",
         **content,
@@ -108,24 +106,19 @@ def _strictest(accuracy: str, kinds: Iterable[str]) -> Preset:
         max(found.cells_across for found in presets),
         max(found.points_per_cell for found in presets),
         min(found.safety for found in presets),
-        min(found.grains_per_cell for found in presets),
+        max(found.cells_along for found in presets),
         min((found.memory for found in presets if found.memory is not None), default=None),
     )
 
 
-def _grain_diameters(materials: Iterable[Mapping[str, Any]]) -> list[float]:
-    """Those that the tables of the materials state [m]."""
+def _refuse_cells_finer_than_grains(accuracy: str, cell_size: float, materials: Iterable[Mapping[str, Any]]) -> None:
+    """Bodies so few grains wide were not tried."""
     diameters = [table.get("grain_diameter") for table in materials]
-    return [float(found) for found in diameters if isinstance(found, int | float) and found > 0.0]
-
-
-def _refuse_cells_finer_than_grains(accuracy: str, cell_size: float, diameters: Iterable[float]) -> None:
-    """Of bodies only so many grains wide the settings are not known to keep to any accuracy."""
-    largest = max(diameters, default=0.0)
+    largest = max((float(found) for found in diameters if isinstance(found, int | float)), default=0.0)
     if cell_size < largest * (1.0 - 1e-9):
         raise ValueError(
-            f"accuracy = '{accuracy}' takes cells of {cell_size:.3g} m for the narrowest body, finer than the grains "
-            f"of {largest:g} m, with which it was not reached; state grid.cell_size and time.safety instead"
+            f"accuracy = '{accuracy}' takes cells of {cell_size:.3g} m, finer than the grains of "
+            f"{largest:g} m, with which it was not tried; state grid.cell_size and time.safety instead"
         )
 
 
@@ -141,14 +134,21 @@ def _with_points(body: Mapping[str, Any], points_per_cell: int) -> dict[str, Any
     return {**body, "points_per_cell": body.get("points_per_cell") or points_per_cell}
 
 
-def _narrowest_width(bodies: Any) -> float | None:
-    """The smallest edge of the bodies' bounding boxes [m]; None if a shape is not well-formed."""
+def _boxes(bodies: Any) -> list[tuple[float, float]]:
+    """Width and height of the bodies' bounding boxes [m]; none if a shape is not well-formed."""
     try:
         shapes = [TypeAdapter(AnyShape).validate_python(body["shape"]) for body in bodies]
         corners = [shape.bounds() for shape in shapes]
-        return min(float(upper[axis] - lower[axis]) for lower, upper in corners for axis in (0, 1))
+        return [(float(upper[0] - lower[0]), float(upper[1] - lower[1])) for lower, upper in corners]
     except (ValidationError, KeyError, TypeError, ValueError):
-        return None
+        return []
+
+
+def _largest_cell(boxes: Iterable[tuple[float, float]], preset: Preset) -> float:
+    """The cell size [m] that has all bodies resolved."""
+    across = [min(box) / preset.cells_across for box in boxes]
+    along = [math.sqrt(width * height) / preset.cells_along for width, height in boxes if preset.cells_along]
+    return min([*across, *along])
 
 
 def _cell_size(grid: Mapping[str, Any], largest: float) -> float:

@@ -19,10 +19,14 @@ def test_it_sets_what_the_scene_leaves_open():
     assert exact.precision == "double"
 
 
-@pytest.mark.parametrize(("accuracy", "cell_size"), [("3%", 0.3 / 48), ("1%", 0.005)])
-def test_fine_settings_follow_the_grains_and_let_the_transfer_follow_the_cells(accuracy, cell_size):
-    scene = Scene.from_dict(changed(COLUMN, {"accuracy": accuracy, "grid.cell_size": None}))
-    assert scene.grid.cell_size == pytest.approx(cell_size)
+@pytest.mark.parametrize(
+    ("accuracy", "width", "most"), [("3%", 0.3, 0.3 / 48), ("3%", 1.0, 1 / 68), ("1%", 1.0, 1 / 88)]
+)
+def test_fine_settings_resolve_width_and_size_and_let_the_transfer_follow_the_cells(accuracy, width, most):
+    block = {"kind": "rectangle", "lower": [1.0, 0.0], "upper": [1.0 + width, 1.0]}
+    scene = Scene.from_dict(changed(COLUMN, {"accuracy": accuracy, "grid.cell_size": None, "body.0.shape": block}))
+    cell_size = scene.grid.cell_size
+    assert 0.95 * most < cell_size < 1.000001 * most
     assert scene.transfer.time_constant == pytest.approx(0.1 * cell_size)
     on_stated_cells = Scene.from_dict(changed(COLUMN, {"accuracy": accuracy, "grid.cell_size": 0.0125}))
     assert on_stated_cells.transfer.time_constant == pytest.approx(0.00125)
@@ -50,7 +54,7 @@ def test_normally_consolidated_clay_has_settings_of_its_own():
         ({"accuracy": "10%", "grid.cell_size": None, "grid.upper": [3.1, 1.037]}, "divide the domain"),
         (
             {"accuracy": "3%", "grid.cell_size": None, "material.mu_i_lc.grain_diameter": 0.007},
-            "cells of 0.00625 m for the narrowest body, finer than the grains of 0.007 m",
+            "cells of 0.00625 m, finer than the grains of 0.007 m",
         ),
     ],
 )
