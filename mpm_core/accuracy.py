@@ -42,7 +42,7 @@ PRESETS: dict[str, dict[str, Preset]] = {
     "mu_i_lc": {
         "10%": Preset(8, 16, 0.4),
         "3%": Preset(48, 16, 0.4, cells_along=68, memory=0.1),
-        "1%": Preset(48, 16, 0.4, cells_along=88, memory=0.1),
+        "1%": Preset(48, 16, 0.4, cells_along=96, memory=0.1),
     },
     "modified_cam_clay, overconsolidation_ratio 1": {"10%": Preset(48, 4, 0.4)},
 }

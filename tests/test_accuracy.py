@@ -20,7 +20,7 @@ def test_it_sets_what_the_scene_leaves_open():
 
 
 @pytest.mark.parametrize(
-    ("accuracy", "width", "most"), [("3%", 0.3, 0.3 / 48), ("3%", 1.0, 1 / 68), ("1%", 1.0, 1 / 88)]
+    ("accuracy", "width", "most"), [("3%", 0.3, 0.3 / 48), ("3%", 1.0, 1 / 68), ("1%", 1.0, 1 / 96)]
 )
 def test_fine_settings_resolve_width_and_size_and_let_the_transfer_follow_the_cells(accuracy, width, most):
     block = {"kind": "rectangle", "lower": [1.0, 0.0], "upper": [1.0 + width, 1.0]}
