@@ -40,9 +40,9 @@ class Preset:
 
 PRESETS: dict[str, dict[str, Preset]] = {
     "mu_i_lc": {
-        "10%": Preset(8, 16, 0.4),
-        "3%": Preset(48, 16, 0.4, cells_along=68, memory=0.1),
-        "1%": Preset(48, 16, 0.4, cells_along=96, memory=0.1),
+        "10%": Preset(8, 25, 0.4, cells_along=15, memory=0.1),
+        "3%": Preset(32, 25, 0.4, cells_along=68, memory=0.1),
+        "1%": Preset(48, 25, 0.4, cells_along=96, memory=0.1),
     },
     "modified_cam_clay, overconsolidation_ratio 1": {"10%": Preset(48, 4, 0.4)},
 }

@@ -11,7 +11,7 @@ SOFTENING = {**CAM_CLAY, "overconsolidation_ratio": 4.0}
 
 def test_it_sets_what_the_scene_leaves_open():
     scene = Scene.from_dict(changed(COLUMN, {"accuracy": "10%", "grid.cell_size": None}))
-    assert (scene.grid.cell_size, scene.time.safety, scene.body[0].points_per_cell) == (1.0 / 30.0, 0.4, 16)
+    assert (scene.grid.cell_size, scene.time.safety, scene.body[0].points_per_cell) == (1.0 / 35.0, 0.4, 25)
     assert scene.precision == "single"
     stated = Scene.from_dict(changed(COLUMN, {"accuracy": "10%", "time.safety": 0.2, "body.0.points_per_cell": 9}))
     assert (stated.grid.cell_size, stated.time.safety, stated.body[0].points_per_cell) == (0.025, 0.2, 9)
@@ -20,7 +20,7 @@ def test_it_sets_what_the_scene_leaves_open():
 
 
 @pytest.mark.parametrize(
-    ("accuracy", "width", "most"), [("3%", 0.3, 0.3 / 48), ("3%", 1.0, 1 / 68), ("1%", 1.0, 1 / 96)]
+    ("accuracy", "width", "most"), [("3%", 0.2, 0.2 / 32), ("3%", 1.0, 1 / 68), ("1%", 1.0, 1 / 96)]
 )
 def test_fine_settings_resolve_width_and_size_and_let_the_transfer_follow_the_cells(accuracy, width, most):
     block = {"kind": "rectangle", "lower": [1.0, 0.0], "upper": [1.0 + width, 1.0]}
@@ -53,8 +53,8 @@ def test_normally_consolidated_clay_has_settings_of_its_own():
         ),
         ({"accuracy": "10%", "grid.cell_size": None, "grid.upper": [3.1, 1.037]}, "divide the domain"),
         (
-            {"accuracy": "3%", "grid.cell_size": None, "material.mu_i_lc.grain_diameter": 0.007},
-            "cells of 0.00625 m, finer than the grains of 0.007 m",
+            {"accuracy": "1%", "grid.cell_size": None, "material.mu_i_lc.grain_diameter": 0.007},
+            "cells of 0.005 m, finer than the grains of 0.007 m",
         ),
     ],
 )

@@ -17,11 +17,11 @@ from validation.speed_error.sweep import REFERENCE_CELLS, references, settings
 FOLDER = Path("runs/speed_error")
 # (material, accuracy, column on which it was not chosen)
 PROMISES = {
-    Effort.QUICK: (("mu(I)-LC", "10%", "tall"),),
+    Effort.QUICK: (("mu(I)-LC", "10%", "slim"),),
     Effort.FULL: (
-        ("mu(I)-LC", "10%", "tall"),
-        ("mu(I)-LC", "3%", "tall"),
-        ("mu(I)-LC", "1%", "tall"),
+        ("mu(I)-LC", "10%", "slim"),
+        ("mu(I)-LC", "3%", "slim"),
+        ("mu(I)-LC", "1%", "slim"),
         ("MCC OCR 1", "10%", "square"),
     ),
 }

@@ -17,13 +17,14 @@ END = 1.5
 WARM_UP_STEPS = 2
 
 # Lower left and upper right corner of the column [m]. Settings of `accuracy` were chosen on the first three, those of
-# mu(I)-LC on the fourth too; the next one shows whether they keep their word.
+# mu(I)-LC on the first five; the next one shows whether they keep their word.
 COLUMNS: dict[str, tuple[list[float], list[float]]] = {
     "paper": ([1.45, 0.0], [1.75, 0.9]),
     "low": ([1.3, 0.0], [1.9, 0.4]),
     "middle": ([1.4, 0.0], [1.8, 0.6]),
     "square": ([1.35, 0.0], [1.85, 0.5]),
     "tall": ([1.475, 0.0], [1.725, 0.95]),
+    "slim": ([1.425, 0.0], [1.775, 0.75]),
 }
 # The share of the mass that lies below the height, and between the fronts.
 MASS_SHARE = 0.98
