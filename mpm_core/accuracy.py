@@ -18,6 +18,9 @@ from mpm_core.shapes import AnyShape
 
 # How much finer than wanted cells may become to divide the domain.
 FINEST_SHARE = 0.5
+# Time constant of the transfer over the cell size [s/m] with which piles of mu(I)-LC converge: as long as waves take to
+# cross two or three cells.
+SHORT_MEMORY = 0.1
 
 
 @dataclass(frozen=True)
@@ -40,9 +43,9 @@ class Preset:
 
 PRESETS: dict[str, dict[str, Preset]] = {
     "mu_i_lc": {
-        "10%": Preset(8, 25, 0.4, cells_along=15, memory=0.1),
-        "3%": Preset(32, 25, 0.4, cells_along=68, memory=0.1),
-        "1%": Preset(48, 25, 0.4, cells_along=96, memory=0.1),
+        "10%": Preset(8, 25, 0.4, cells_along=15, memory=SHORT_MEMORY),
+        "3%": Preset(32, 25, 0.4, cells_along=68, memory=SHORT_MEMORY),
+        "1%": Preset(48, 25, 0.4, cells_along=96, memory=SHORT_MEMORY),
     },
     "modified_cam_clay, overconsolidation_ratio 1": {"10%": Preset(48, 4, 0.4)},
 }

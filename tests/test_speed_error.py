@@ -11,6 +11,7 @@ from validation.speed_error.exact import ExactSetting, cost_and_error
 from validation.speed_error.front import error, mean_observables, pareto_front
 from validation.speed_error.setting import Outcome, Setting, as_dict
 from validation.speed_error.store import made_with_other_kernels, outcomes
+from validation.speed_error.sweep import references
 
 OUTCOME = Outcome(points=1, steps=1, cpu_time=1.0, runout=1.0, height=0.5, center=0.2, mark="")
 
@@ -28,10 +29,16 @@ def test_the_front_holds_what_nothing_cheaper_is_as_good_as():
     assert pareto_front(costs) == [("cheap", 1.0, 0.3), ("good", 3.0, 0.1)]
 
 
-def test_settings_of_different_precision_and_points_have_files_of_their_own():
+def test_settings_that_differ_have_files_of_their_own():
     usual = Setting("MCC OCR 1", "paper", 0.05)
-    others = replace(usual, precision="single"), replace(usual, points_per_cell=4)
-    assert len({usual.key, *(other.key for other in others)}) == 3
+    changes = ({"precision": "single"}, {"points_per_cell": 4}, {"time_constant": 0.005})
+    assert len({usual.key, *(replace(usual, **change).key for change in changes)}) == 4
+
+
+def test_the_reference_of_mu_i_forgets_faster_on_finer_cells_and_that_of_clay_does_not():
+    cells = (0.01, 0.005)
+    assert [found.time_constant for found in references("mu(I)-LC", "paper", cells)] == [0.001, 0.0005]
+    assert [found.time_constant for found in references("MCC OCR 1", "paper", cells)] == [0.01, 0.01]
 
 
 def test_the_square_costs_more_and_errs_less_on_finer_cells():

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import product
 
+from mpm_core.accuracy import SHORT_MEMORY
 from validation.speed_error.setting import Setting
 
 SAFETIES = (0.8, 0.4, 0.2)
@@ -19,8 +20,7 @@ REFERENCE_CELLS = {
     "MCC OCR 1": (1.0 / 120.0, 1.0 / 140.0, 1.0 / 160.0),
     "MCC OCR 4": (1.0 / 120.0, 1.0 / 140.0, 1.0 / 160.0),
 }
-# With time constants that follow the cell size, at this share of it [s/m], mu(I)-LC converges.
-SHORT_MEMORY = {"mu(I)-LC": 0.1}
+WITH_SHORT_MEMORY = ("mu(I)-LC",)
 CELLS_OF_SHORT_MEMORY = (*COARSE_CELLS, FINE_CELL, 1.0 / 120.0, 1.0 / 160.0, 1.0 / 200.0)
 
 
@@ -30,7 +30,7 @@ def settings(material: str, column: str = "paper") -> list[Setting]:
         Setting(material, column, *values)
         for values in product(COARSE_CELLS, POINTS_PER_CELL, SAFETIES, SCHEMES, BASES)
     ]
-    cells_of_short_memory = CELLS_OF_SHORT_MEMORY if material in SHORT_MEMORY else ()
+    cells_of_short_memory = CELLS_OF_SHORT_MEMORY if material in WITH_SHORT_MEMORY else ()
     short = [_of_finest_kind(material, column, cell_size) for cell_size in cells_of_short_memory]
     return [*found, *_one_at_a_time(material, column, FINE_CELL), *short]
 
@@ -43,8 +43,9 @@ def references(material: str, column: str, cells: Sequence[float]) -> list[Setti
 def _of_finest_kind(material: str, column: str, cell_size: float) -> Setting:
     """The transfer of the reference on other cells."""
     setting = Setting(material, column, cell_size)
-    memory = SHORT_MEMORY.get(material)
-    return setting if memory is None else replace(setting, time_constant=memory * cell_size)
+    if material not in WITH_SHORT_MEMORY:
+        return setting
+    return replace(setting, time_constant=SHORT_MEMORY * cell_size)
 
 
 def _one_at_a_time(material: str, column: str, cell_size: float) -> Iterator[Setting]:
