@@ -27,7 +27,7 @@ PROMISES = {
 }
 COARSE_REFERENCE = (1.0 / 60.0, 1.0 / 70.0)
 
-COARSE_CELL = 0.1
+COARSE_CELL = 0.2
 
 # Times and errors of named settings.
 Costs = dict[str, tuple[float, float]]
@@ -110,7 +110,7 @@ CASE = Case(
     proves="a scene with accuracy = '10%' or '3%' is that close to finer grids, on a column on which it was not chosen",
     reference="the mean of the same collapse on the three finest grids, at t = 1.5 s",
     norm="largest relative difference of runout and height of 98 % of the mass and centre of mass",
-    mistake="cells of 0.1 m, four or five across the column",
+    mistake="cells of 0.2 m, two across the column",
     measure=measure,
     control=control,
 )
