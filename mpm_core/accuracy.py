@@ -3,8 +3,8 @@
 `grainlaw validate speed_error` measured how runout, height of the pile and height of the centre of mass of column
 collapses differ from their mean on finer grids, over cell size, step, transfer and shape functions. Here stands, for
 each law and accuracy, a setting that kept to it with the finer grids that were tried, on columns on which it was chosen
-as well as on one on which it was not. Where no grid did, there is no entry: a scene that asks for it is refused. Single
-precision changes none of these errors by more than a tenth of a per cent.
+as well as on one on which it was not, in single precision. Where no grid did, there is no entry: a scene that asks for
+it is refused.
 """
 
 import math
