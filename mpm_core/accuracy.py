@@ -37,7 +37,7 @@ class Preset:
     cells_across: int
     points_per_cell: int
     safety: float
-    cells_along: int = 0
+    cells_along: int = 1
     memory: float | None = None
 
 
@@ -149,9 +149,7 @@ def _boxes(bodies: Any) -> list[tuple[float, float]]:
 
 def _largest_cell(boxes: Iterable[tuple[float, float]], preset: Preset) -> float:
     """The cell size [m] that has all bodies resolved."""
-    across = [min(box) / preset.cells_across for box in boxes]
-    along = [math.sqrt(width * height) / preset.cells_along for width, height in boxes if preset.cells_along]
-    return min([*across, *along])
+    return min(min(min(box) / preset.cells_across, math.sqrt(math.prod(box)) / preset.cells_along) for box in boxes)
 
 
 def _cell_size(grid: Mapping[str, Any], largest: float) -> float:

@@ -25,6 +25,7 @@ PROMISES = {
         ("MCC OCR 1", "10%", "square"),
     ),
 }
+# In quick effort [m].
 COARSE_REFERENCE = (1.0 / 60.0, 1.0 / 70.0)
 
 COARSE_CELL = 0.2
@@ -107,7 +108,7 @@ def control(effort: Effort) -> tuple[Measurement, ...]:
 CASE = Case(
     name="speed_error",
     title="column collapses with many settings, errors over processor time",
-    proves="a scene with accuracy = '10%' or '3%' is that close to finer grids, on a column on which it was not chosen",
+    proves="accuracy = '10%', '3%' or '1%' is that close to finer grids, on a column that was not used to choose it",
     reference="the mean of the same collapse on the three finest grids, at t = 1.5 s",
     norm="largest relative difference of runout and height of 98 % of the mass and centre of mass",
     mistake="cells of 0.2 m, two across the column",

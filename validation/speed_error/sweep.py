@@ -14,14 +14,14 @@ POINTS_PER_CELL = (4, 9, 16)
 # On these all combinations are cheap; on the finer ones only one choice at a time departs from the defaults.
 COARSE_CELLS = (0.05, 0.025)
 FINE_CELL = 0.0125
-# Of the rate-independent clay no finer grid is closer to the others.
+# A mean scatters less than one grid. Those of clay are coarser: finer ones cost more and come no closer to one another.
 REFERENCE_CELLS = {
     "mu(I)-LC": (1.0 / 200.0, 1.0 / 220.0, 1.0 / 240.0),
     "MCC OCR 1": (1.0 / 120.0, 1.0 / 140.0, 1.0 / 160.0),
     "MCC OCR 4": (1.0 / 120.0, 1.0 / 140.0, 1.0 / 160.0),
 }
-WITH_SHORT_MEMORY = ("mu(I)-LC",)
-CELLS_OF_SHORT_MEMORY = (*COARSE_CELLS, FINE_CELL, 1.0 / 120.0, 1.0 / 160.0, 1.0 / 200.0)
+# On these the transfer of the reference is compared too, where that is another than the default.
+CELLS_OF_SHORT_MEMORY = {"mu(I)-LC": (*COARSE_CELLS, FINE_CELL, 1.0 / 120.0, 1.0 / 160.0, 1.0 / 200.0)}
 
 
 def settings(material: str, column: str = "paper") -> list[Setting]:
@@ -30,22 +30,16 @@ def settings(material: str, column: str = "paper") -> list[Setting]:
         Setting(material, column, *values)
         for values in product(COARSE_CELLS, POINTS_PER_CELL, SAFETIES, SCHEMES, BASES)
     ]
-    cells_of_short_memory = CELLS_OF_SHORT_MEMORY if material in WITH_SHORT_MEMORY else ()
-    short = [_of_finest_kind(material, column, cell_size) for cell_size in cells_of_short_memory]
-    return [*found, *_one_at_a_time(material, column, FINE_CELL), *short]
+    short_memory = references(material, column, CELLS_OF_SHORT_MEMORY.get(material, ()))
+    return [*found, *_one_at_a_time(material, column, FINE_CELL), *short_memory]
 
 
 def references(material: str, column: str, cells: Sequence[float]) -> list[Setting]:
-    """Grids with the most points, against the mean of which errors are counted."""
-    return [_of_finest_kind(material, column, cell_size) for cell_size in cells]
-
-
-def _of_finest_kind(material: str, column: str, cell_size: float) -> Setting:
-    """The transfer of the reference on other cells."""
-    setting = Setting(material, column, cell_size)
-    if material not in WITH_SHORT_MEMORY:
-        return setting
-    return replace(setting, time_constant=SHORT_MEMORY * cell_size)
+    """Grids with the most points and the transfer of the reference, against the mean of which errors are counted."""
+    found = [Setting(material, column, cell_size) for cell_size in cells]
+    if material not in CELLS_OF_SHORT_MEMORY:
+        return found
+    return [replace(setting, time_constant=SHORT_MEMORY * setting.cell_size) for setting in found]
 
 
 def _one_at_a_time(material: str, column: str, cell_size: float) -> Iterator[Setting]:
