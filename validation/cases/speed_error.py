@@ -23,6 +23,7 @@ PROMISES = {
         ("mu(I)-LC", "3%", "slim"),
         ("mu(I)-LC", "1%", "slim"),
         ("MCC OCR 1", "10%", "square"),
+        ("MCC OCR 1", "3%", "upright"),
     ),
 }
 # In quick effort [m].

@@ -17,7 +17,7 @@ FINE_CELL = 0.0125
 # A mean scatters less than one grid. Those of clay are coarser: finer ones cost more and come no closer to one another.
 REFERENCE_CELLS = {
     "mu(I)-LC": (1.0 / 200.0, 1.0 / 220.0, 1.0 / 240.0),
-    "MCC OCR 1": (1.0 / 120.0, 1.0 / 140.0, 1.0 / 160.0),
+    "MCC OCR 1": (1.0 / 180.0, 1.0 / 200.0, 1.0 / 220.0),
     "MCC OCR 4": (1.0 / 120.0, 1.0 / 140.0, 1.0 / 160.0),
 }
 # On these the transfer of the reference is compared too, where that is another than the default.
