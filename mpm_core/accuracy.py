@@ -54,6 +54,10 @@ PRESETS: dict[str, dict[str, Preset]] = {
         # The runout of more slender columns scatters by more between grids however fine.
         "3%": Preset(64, 16, 0.4, cells_along=80, slenderness=1.5),
     },
+    # More slender columns fall in one of two ways, and leave other piles.
+    "modified_cam_clay, overconsolidation_ratio 4": {
+        "10%": Preset(64, 25, 0.4, cells_along=80, memory=SHORT_MEMORY, slenderness=1.5)
+    },
 }
 ACCURACIES = ("10%", "3%", "1%")
 

@@ -9,7 +9,6 @@ from materials import InputError
 from mpm_core import Scene
 
 CLAY = {"material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"}
-SOFTENING = {**CAM_CLAY, "overconsolidation_ratio": 4.0}
 
 
 def test_it_sets_what_the_scene_leaves_open():
@@ -56,8 +55,12 @@ def test_normally_consolidated_clay_has_settings_of_its_own():
         ),
         ({**CLAY, "accuracy": "3%"}, "up to 1.5 times as high as wide, not 2.67 times"),
         (
-            {"accuracy": "10%", "material": {"modified_cam_clay": SOFTENING}, "body.0.material": "modified_cam_clay"},
-            "with modified_cam_clay, overconsolidation_ratio 4; state grid.cell_size and time.safety instead",
+            {**CLAY, "accuracy": "3%", "material.modified_cam_clay.overconsolidation_ratio": 4.0},
+            "with modified_cam_clay, overconsolidation_ratio 4; allowed: 10%",
+        ),
+        (
+            {**CLAY, "accuracy": "10%", "material.modified_cam_clay.overconsolidation_ratio": 2.0},
+            "with modified_cam_clay, overconsolidation_ratio 2; state grid.cell_size and time.safety instead",
         ),
         ({"accuracy": "10%", "grid.cell_size": None, "grid.upper": [3.1, 1.037]}, "divide the domain"),
         (

@@ -35,10 +35,14 @@ def test_settings_that_differ_have_files_of_their_own():
     assert len({usual.key, *(replace(usual, **change).key for change in changes)}) == 4
 
 
-def test_the_reference_of_mu_i_forgets_faster_on_finer_cells_and_that_of_clay_does_not():
+def test_references_have_the_transfer_and_points_with_which_piles_of_their_law_converge():
     cells = (0.01, 0.005)
     assert [found.time_constant for found in references("mu(I)-LC", "paper", cells)] == [0.001, 0.0005]
     assert [found.time_constant for found in references("MCC OCR 1", "paper", cells)] == [0.01, 0.01]
+    assert references("MCC OCR 4", "paper", ()) == []
+    softening = references("MCC OCR 4", "paper")
+    assert {found.points_per_cell for found in softening} == {25}
+    assert all(found.time_constant == pytest.approx(0.1 * found.cell_size) for found in softening)
 
 
 def test_the_square_costs_more_and_errs_less_on_finer_cells():

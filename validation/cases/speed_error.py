@@ -11,7 +11,7 @@ from validation.speed_error.exact import cost_and_error, exact_settings
 from validation.speed_error.front import error, mean_observables, pareto_front
 from validation.speed_error.setting import COLUMNS, Outcome, Setting
 from validation.speed_error.store import made_with_other_kernels, outcomes
-from validation.speed_error.sweep import REFERENCE_CELLS, references, settings
+from validation.speed_error.sweep import references, settings
 
 # Outcomes stay here: a sweep that was stopped goes on, and the report says how many were made with other kernels.
 FOLDER = Path("runs/speed_error")
@@ -24,6 +24,7 @@ PROMISES = {
         ("mu(I)-LC", "1%", "slim"),
         ("MCC OCR 1", "10%", "square"),
         ("MCC OCR 1", "3%", "upright"),
+        ("MCC OCR 4", "10%", "upright"),
     ),
 }
 # In quick effort [m].
@@ -39,7 +40,7 @@ def measured(effort: Effort, cell_size: float | None = None) -> tuple[Measuremen
     """The observables of each column with the cells of an accuracy against those on the finest ones."""
     found = []
     for material, accuracy, column in PROMISES[effort]:
-        cells = COARSE_REFERENCE if effort is Effort.QUICK else REFERENCE_CELLS[material]
+        cells = COARSE_REFERENCE if effort is Effort.QUICK else None
         fine = mean_outcome(references(material, column, cells))
         (outcome,) = outcomes(FOLDER, (promised_setting(material, accuracy, column, cell_size),)).values()
         name, band = f"largest error, {material}, accuracy = {accuracy}", float(accuracy.rstrip("%")) / 100.0
@@ -87,7 +88,7 @@ def measure(effort: Effort) -> Evidence:
 
 def costs_of_collapse(material: str, found: Mapping[Setting, Outcome | None]) -> Costs:
     """Of the paper's column with all settings that do not break down."""
-    fine = mean_outcome(references(material, "paper", REFERENCE_CELLS[material]))
+    fine = mean_outcome(references(material, "paper"))
     return {
         setting.key: (outcome.cpu_time, error(outcome, fine))
         for setting, outcome in found.items()

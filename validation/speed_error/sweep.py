@@ -1,7 +1,7 @@
 """Which settings are compared, and against what."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import product
 
 from mpm_core.accuracy import SHORT_MEMORY
@@ -14,14 +14,29 @@ POINTS_PER_CELL = (4, 9, 16)
 # On these all combinations are cheap; on the finer ones only one choice at a time departs from the defaults.
 COARSE_CELLS = (0.05, 0.025)
 FINE_CELL = 0.0125
-# A mean scatters less than one grid. Those of clay are coarser: finer ones cost more and come no closer to one another.
-REFERENCE_CELLS = {
-    "mu(I)-LC": (1.0 / 200.0, 1.0 / 220.0, 1.0 / 240.0),
-    "MCC OCR 1": (1.0 / 180.0, 1.0 / 200.0, 1.0 / 220.0),
-    "MCC OCR 4": (1.0 / 120.0, 1.0 / 140.0, 1.0 / 160.0),
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Grids against the mean of which errors are counted, as it scatters less than one of them.
+
+    cells            cell sizes [m]
+    points_per_cell  material points per cell
+    memory           time constant of the transfer over the cell size [s/m]; None for the default
+    """
+
+    cells: tuple[float, ...]
+    points_per_cell: int = 16
+    memory: float | None = None
+
+
+REFERENCES = {
+    "mu(I)-LC": Reference((1.0 / 200.0, 1.0 / 220.0, 1.0 / 240.0), memory=SHORT_MEMORY),
+    "MCC OCR 1": Reference((1.0 / 180.0, 1.0 / 200.0, 1.0 / 220.0)),
+    "MCC OCR 4": Reference((1.0 / 160.0, 1.0 / 180.0, 1.0 / 200.0), 25, SHORT_MEMORY),
 }
-# On these the transfer of the reference is compared too, where that is another than the default.
-CELLS_OF_SHORT_MEMORY = {"mu(I)-LC": (*COARSE_CELLS, FINE_CELL, 1.0 / 120.0, 1.0 / 160.0, 1.0 / 200.0)}
+# On these points and transfer of the reference are compared too, where they are others than the defaults.
+CELLS_LIKE_REFERENCE = {"mu(I)-LC": (*COARSE_CELLS, FINE_CELL, 1.0 / 120.0, 1.0 / 160.0, 1.0 / 200.0)}
 
 
 def settings(material: str, column: str = "paper") -> list[Setting]:
@@ -30,16 +45,18 @@ def settings(material: str, column: str = "paper") -> list[Setting]:
         Setting(material, column, *values)
         for values in product(COARSE_CELLS, POINTS_PER_CELL, SAFETIES, SCHEMES, BASES)
     ]
-    short_memory = references(material, column, CELLS_OF_SHORT_MEMORY.get(material, ()))
-    return [*found, *_one_at_a_time(material, column, FINE_CELL), *short_memory]
+    like_reference = references(material, column, CELLS_LIKE_REFERENCE.get(material, ()))
+    return [*found, *_one_at_a_time(material, column, FINE_CELL), *like_reference]
 
 
-def references(material: str, column: str, cells: Sequence[float]) -> list[Setting]:
-    """Grids with the most points and the transfer of the reference, against the mean of which errors are counted."""
-    found = [Setting(material, column, cell_size) for cell_size in cells]
-    if material not in CELLS_OF_SHORT_MEMORY:
+def references(material: str, column: str, cells: Sequence[float] | None = None) -> list[Setting]:
+    """Grids with the points and the transfer of the reference, of its own cell sizes if no others [m] are given."""
+    chosen = REFERENCES[material]
+    sizes = chosen.cells if cells is None else cells
+    found = [Setting(material, column, cell_size, chosen.points_per_cell) for cell_size in sizes]
+    if chosen.memory is None:
         return found
-    return [replace(setting, time_constant=SHORT_MEMORY * setting.cell_size) for setting in found]
+    return [replace(setting, time_constant=chosen.memory * setting.cell_size) for setting in found]
 
 
 def _one_at_a_time(material: str, column: str, cell_size: float) -> Iterator[Setting]:
