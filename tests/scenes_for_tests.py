@@ -78,7 +78,7 @@ def changed(content, changes):
         if value is None:
             del table[last]
         else:
-            table[last] = value
+            table[last] = copy.deepcopy(value)
     return content
 
 

@@ -8,7 +8,11 @@ from scenes_for_tests import CAM_CLAY, COLUMN, changed
 from materials import InputError
 from mpm_core import Scene
 
-CLAY = {"material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"}
+
+def clay(ratio):
+    """Changes that make the column one of clay with this overconsolidation ratio."""
+    parameters = {**CAM_CLAY, "overconsolidation_ratio": ratio}
+    return {"material": {"modified_cam_clay": parameters}, "body.0.material": "modified_cam_clay"}
 
 
 def test_it_sets_what_the_scene_leaves_open():
@@ -38,10 +42,12 @@ def test_fine_settings_resolve_width_and_size_and_let_the_transfer_follow_the_ce
 
 
 def test_normally_consolidated_clay_has_settings_of_its_own():
-    scene = Scene.from_dict(changed(COLUMN, {**CLAY, "accuracy": "10%", "grid.cell_size": None}))
+    scene = Scene.from_dict(changed(COLUMN, {**clay(1.0), "accuracy": "10%", "grid.cell_size": None}))
     assert scene.grid.cell_size == pytest.approx(0.3 / 48)
     squat = {"kind": "rectangle", "lower": [1.0, 0.0], "upper": [1.4, 0.6]}
-    scene = Scene.from_dict(changed(COLUMN, {**CLAY, "accuracy": "3%", "grid.cell_size": None, "body.0.shape": squat}))
+    scene = Scene.from_dict(
+        changed(COLUMN, {**clay(1.0), "accuracy": "3%", "grid.cell_size": None, "body.0.shape": squat})
+    )
     assert 0.95 * math.sqrt(0.24) / 80 < scene.grid.cell_size < 1.000001 * math.sqrt(0.24) / 80
     assert (scene.body[0].points_per_cell, scene.transfer.time_constant) == (16, 0.01)
 
@@ -50,16 +56,16 @@ def test_normally_consolidated_clay_has_settings_of_its_own():
     ("changes", "message"),
     [
         (
-            {**CLAY, "accuracy": "1%"},
+            {**clay(1.0), "accuracy": "1%"},
             "not reached on any grid with modified_cam_clay, overconsolidation_ratio 1; allowed: 10%, 3%",
         ),
-        ({**CLAY, "accuracy": "3%"}, "up to 1.5 times as high as wide, not 2.67 times"),
+        ({**clay(1.0), "accuracy": "3%"}, "up to 1.5 times as high as wide, not 2.67 times"),
         (
-            {**CLAY, "accuracy": "3%", "material.modified_cam_clay.overconsolidation_ratio": 4.0},
+            {**clay(4.0), "accuracy": "3%"},
             "with modified_cam_clay, overconsolidation_ratio 4; allowed: 10%",
         ),
         (
-            {**CLAY, "accuracy": "10%", "material.modified_cam_clay.overconsolidation_ratio": 2.0},
+            {**clay(2.0), "accuracy": "10%"},
             "with modified_cam_clay, overconsolidation_ratio 2; state grid.cell_size and time.safety instead",
         ),
         ({"accuracy": "10%", "grid.cell_size": None, "grid.upper": [3.1, 1.037]}, "divide the domain"),
