@@ -18,9 +18,11 @@ from mpm_core.shapes import AnyShape
 
 # How much finer than wanted cells may become to divide the domain.
 FINEST_SHARE = 0.5
-# Time constant of the transfer over the cell size [s/m] with which piles of mu(I)-LC converge: as long as waves take to
-# cross two or three cells.
+# Time constant of the transfer over the cell size [s/m] with which piles of mu(I)-LC converge, as long as its waves
+# take to cross two or three cells, and squat ones of overconsolidated clay repeat.
 SHORT_MEMORY = 0.1
+# What is left to a scene whose accuracy is refused.
+INSTEAD = "state grid.cell_size and time.safety instead"
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ def _strictest(accuracy: str, kinds: Iterable[str]) -> Preset:
     for kind in kinds:
         reached = PRESETS.get(kind, {})
         if accuracy not in reached:
-            allowed = f"allowed: {', '.join(reached)}" if reached else "state grid.cell_size and time.safety instead"
+            allowed = f"allowed: {', '.join(reached)}" if reached else INSTEAD
             raise ValueError(f"accuracy = '{accuracy}' was not reached on any grid with {kind}; {allowed}")
         presets.append(reached[accuracy])
     return Preset(
@@ -132,7 +134,7 @@ def _refuse_slender_bodies(accuracy: str, boxes: Iterable[tuple[float, float]], 
     if slenderest > preset.slenderness * (1.0 + 1e-9):
         raise ValueError(
             f"accuracy = '{accuracy}' was reached with bodies of these materials up to {preset.slenderness:g} times as "
-            f"high as wide, not {slenderest:.3g} times; state grid.cell_size and time.safety instead"
+            f"high as wide, not {slenderest:.3g} times; {INSTEAD}"
         )
 
 
@@ -143,7 +145,7 @@ def _refuse_cells_finer_than_grains(accuracy: str, cell_size: float, materials: 
     if cell_size < largest * (1.0 - 1e-9):
         raise ValueError(
             f"accuracy = '{accuracy}' takes cells of {cell_size:.3g} m, finer than the grains of "
-            f"{largest:g} m, with which it was not tried; state grid.cell_size and time.safety instead"
+            f"{largest:g} m, with which it was not tried; {INSTEAD}"
         )
 
 
