@@ -30,8 +30,8 @@ from benchmarks.tables import (
     two_cores_table,
 )
 from benchmarks.two_cores import gain_of_two_cores
-from mpm_core.threads import cores
-from validation.collapses import SCENES
+from grainlaw.mpm_core.parallel.threads import cores
+from grainlaw.validation.collapses import SCENES
 
 
 class Part(StrEnum):

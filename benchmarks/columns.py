@@ -1,10 +1,10 @@
 """The paper's column as the benchmarks use it: at rest at the start, or set in motion so that every point yields."""
 
-from mpm_core.columns import AXX, AYY, LXX, LYY, VX, VY, X, Y
-from mpm_core.run import next_step
-from mpm_core.simulation import Simulation
-from mpm_core.threads import use_threads
-from validation.collapses import collapse
+from grainlaw.mpm_core.layout import AXX, AYY, LXX, LYY, VX, VY, X, Y
+from grainlaw.mpm_core.parallel.threads import use_threads
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.stepping.run import next_step
+from grainlaw.validation.collapses import collapse
 
 # The rate [1/s] at which the column spreads and sinks: about the mean of a collapse that takes half a second.
 SPREADING_RATE = 2.0

@@ -7,10 +7,10 @@ from tempfile import TemporaryDirectory
 from time import process_time
 from typing import Any
 
-from mpm_core.plan import plan
-from mpm_core.run import run
-from mpm_core.scene import Scene
-from validation.scenes import SCENES as FOLDER
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.stepping.plan import plan
+from grainlaw.mpm_core.stepping.run import run
+from grainlaw.validation.scenes import SCENES as FOLDER
 
 # Shipped scenes, on cells that make a run take seconds.
 SCENES: dict[str, dict[str, Any]] = {

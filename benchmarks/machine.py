@@ -9,7 +9,7 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from mpm_core.threads import cores
+from grainlaw.mpm_core.parallel.threads import cores
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -17,11 +17,11 @@ from typing import Any
 
 from benchmarks.columns import make_steps
 from benchmarks.roofline import Roofline
-from mpm_core import momentum
-from mpm_core import simulation as stepping
-from mpm_core.body import Body
-from mpm_core.contact import Contact
-from mpm_core.simulation import Simulation
+from grainlaw.mpm_core import simulation as stepping
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.kernels import grid_update as momentum
+from grainlaw.mpm_core.kernels.wall_clearance import Contact
+from grainlaw.mpm_core.simulation import Simulation
 
 # Columns of a point that a pass reads and writes; of the stress pass without the law's state.
 COLUMNS_MOVED = {

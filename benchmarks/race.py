@@ -9,9 +9,9 @@ import numpy as np
 from benchmarks.columns import advance_to
 from benchmarks.timing import Duration, Spread, spread, timed
 from benchmarks.yardstick import Yardstick
-from materials.precision import PRECISIONS
-from mpm_core.simulation import Simulation
-from validation.collapses import collapse
+from grainlaw.materials.precision import PRECISIONS
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.collapses import collapse
 
 YARDSTICK = "yardstick"
 LAPS = 60

@@ -10,7 +10,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table as RichTable
 
-from mpm_core.output import atomic
+from grainlaw.materials import atomic
 
 WIDTH = 140
 

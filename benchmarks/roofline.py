@@ -7,10 +7,10 @@ import numpy as np
 from numba import njit
 
 # teaches the compiler what `fused` is
-import materials.compilation  # noqa: F401
+import grainlaw.materials.compilation  # noqa: F401
 from benchmarks.timing import timed
-from materials.elementary import fused
-from materials.precision import PRECISIONS
+from grainlaw.materials.elementary import fused
+from grainlaw.materials.precision import PRECISIONS
 
 REPEATS = 7
 LEAST_WORK = 2e8

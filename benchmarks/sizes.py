@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from benchmarks.columns import make_steps, moving_column
 from benchmarks.timing import Duration, Spread, spread, taking_turns
-from mpm_core.simulation import Simulation
+from grainlaw.mpm_core.simulation import Simulation
 
 # Enough for the points to be sorted at least once; so few that the column keeps its shape.
 FEWEST_STEPS, MOST_STEPS = 40, 200

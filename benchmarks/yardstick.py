@@ -25,10 +25,10 @@ from numba import njit
 from numba.extending import register_jitable
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
-from materials.compilation import PointwiseLaw, mark_of_sources, named, pointwise_law
-from materials.tensor import SymmetricTensor
-from mpm_core.columns import DENSITY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
-from mpm_core.simulation import Simulation
+from grainlaw.materials.compilation import PointwiseLaw, mark_of_sources, named, pointwise_law
+from grainlaw.materials.tensor import SymmetricTensor
+from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
+from grainlaw.mpm_core.simulation import Simulation
 
 # Nodes between the edge of the grid and the walls.
 PADDING = 3

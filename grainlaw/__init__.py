@@ -1,1 +1,1 @@
-"""The command line of grainlaw: thin, over materials, mpm_core and validation."""
+"""Constitutive laws for granular matter, an MPM core that runs any of them, and the evidence for each."""

@@ -1,5 +1,5 @@
 """`python -m grainlaw` is the command line."""
 
-from grainlaw.cli import main
+from grainlaw.cli.main import main
 
 main()

@@ -18,11 +18,11 @@ from numba import njit
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
 from numba.extending import intrinsic, overload, register_jitable
 
-from materials.elementary import fused
-from materials.errors import InputError
-from materials.law import Law
-from materials.pointwise import MARKED
-from materials.single_precision import in_single
+from grainlaw.materials.elementary import fused
+from grainlaw.materials.errors import InputError
+from grainlaw.materials.law import Law
+from grainlaw.materials.pointwise import MARKED
+from grainlaw.materials.single_precision import in_single
 
 _CAUSE = re.compile(r"Untyped global|Unknown attribute|NameError|nsupported|not supported|Cannot unify|Invalid use")
 

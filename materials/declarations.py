@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass
 from typing import Any, get_type_hints
 
-from materials.errors import InputError, nearest_name
+from grainlaw.materials.errors import InputError, nearest_name
 
 BASE_UNITS = ("1", "m", "kg", "s", "Pa", "N", "J", "K", "rad")
 _FACTOR = rf"(?:{'|'.join(BASE_UNITS)})\d*"

@@ -7,8 +7,8 @@ law of rate form, sheared material whose volume changes by eps gains or loses th
 
 import math
 
-from materials.pointwise import pointwise
-from materials.tensor import SymmetricTensor, contraction, deviator
+from grainlaw.materials.pointwise import pointwise
+from grainlaw.materials.tensor import SymmetricTensor, contraction, deviator
 
 
 @pointwise

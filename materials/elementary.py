@@ -5,7 +5,7 @@ Near zero their power series are exact to the last bits and take a fraction of t
 
 import math
 
-from materials.pointwise import pointwise
+from grainlaw.materials.pointwise import pointwise
 
 SMALL = 0.01
 

@@ -8,9 +8,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from materials.declarations import DeclarationError, Parameter, StateVariable, checked_parameters, declared_fields
-from materials.errors import InputError
-from materials.tensor import SymmetricTensor, isotropic
+from grainlaw.materials.declarations import (
+    DeclarationError,
+    Parameter,
+    StateVariable,
+    checked_parameters,
+    declared_fields,
+)
+from grainlaw.materials.errors import InputError
+from grainlaw.materials.tensor import SymmetricTensor, isotropic
 
 # The version of the interface between laws and grainlaw, and the oldest for which a law may have been written. The
 # version rises when a law can use something new, the oldest when a law written for an older one would go wrong.

@@ -11,8 +11,8 @@ from types import ModuleType
 
 import pluggy
 
-from materials.errors import InputError, nearest_name
-from materials.law import Law, check_law
+from grainlaw.materials.errors import InputError, nearest_name
+from grainlaw.materials.law import Law, check_law
 
 PROJECT = "grainlaw"
 ENTRY_POINT_GROUP = "grainlaw.materials"

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numba.extending import register_jitable
 
-from materials.pointwise import MARKED
+from grainlaw.materials.pointwise import MARKED
 
 # Functions of the core that are compiled as `register_jitable` does, and of which there may be a version in singles.
 _ADAPTABLE: set[Callable[..., Any]] = set()

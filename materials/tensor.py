@@ -7,7 +7,7 @@ Tensors are tension-positive; pressure is compression-positive. Every function h
 import math
 from typing import NamedTuple
 
-from materials.pointwise import pointwise
+from grainlaw.materials.pointwise import pointwise
 
 # Times a third is a fraction of the time of a division by three.
 THIRD = 1.0 / 3.0

@@ -7,21 +7,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from materials import InputError, SymmetricTensor
-from materials.compilation import explained, pointwise_law
-from materials.law import Law
-from mpm_core.basis import Basis
-from mpm_core.blocks import blocks_of
-from mpm_core.columns import AFFINE, DENSITY, FIRST_STATE, GRADIENT, NAMES, RESTS, SXX, SXY, SYY, SZZ, VX, VY
-from mpm_core.grid import Grid
-from mpm_core.grid_to_points import REPORTS as TRANSFER_REPORTS
-from mpm_core.grid_to_points import make_grid_to_points
-from mpm_core.lanes import MOST_AT_ONCE
-from mpm_core.places import coordinate_of, density_of_first, places_of, put_coordinate
-from mpm_core.points_to_grid import make_points_to_grid
-from mpm_core.sorting import reorder, sort_by_stencil
-from mpm_core.stress import MAX_SIGNAL_SPEED, make_stress_pass
-from mpm_core.stress import REPORTS as STRESS_REPORTS
+from grainlaw.materials import InputError, SymmetricTensor
+from grainlaw.materials.compilation import explained, pointwise_law
+from grainlaw.materials.law import Law
+from grainlaw.mpm_core.grid.grid import Grid
+from grainlaw.mpm_core.kernels.g2p import REPORTS as TRANSFER_REPORTS
+from grainlaw.mpm_core.kernels.g2p import make_grid_to_points
+from grainlaw.mpm_core.kernels.p2g import make_points_to_grid
+from grainlaw.mpm_core.kernels.positions import coordinate_of, density_of_first, places_of, put_coordinate
+from grainlaw.mpm_core.kernels.shape_functions import Basis
+from grainlaw.mpm_core.kernels.simd.registers import MOST_AT_ONCE
+from grainlaw.mpm_core.kernels.stress_update import MAX_SIGNAL_SPEED, make_stress_pass
+from grainlaw.mpm_core.kernels.stress_update import REPORTS as STRESS_REPORTS
+from grainlaw.mpm_core.layout import AFFINE, DENSITY, FIRST_STATE, GRADIENT, NAMES, RESTS, SXX, SXY, SYY, SZZ, VX, VY
+from grainlaw.mpm_core.parallel.blocks import blocks_of
+from grainlaw.mpm_core.parallel.sorting import reorder, sort_by_stencil
 
 # Points whose distinct states are found together at the start; memory would peak with all of them.
 POINTS_AT_ONCE = 2**18

@@ -6,27 +6,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from materials import SimulationError
-from mpm_core import momentum
-from mpm_core.basis import BASES
-from mpm_core.body import Body
-from mpm_core.body_force import BodyForce, scatter_body_force
-from mpm_core.boundary import SIDES, Wall, WallKind, hold_at_walls, join_periodic, rows_in_reach
-from mpm_core.columns import LXX, LYY, X, Y
-from mpm_core.contact import Contact
-from mpm_core.elastic_energy import elastic_energy
-from mpm_core.fields import chosen_fields
-from mpm_core.grid import Grid
-from mpm_core.held_nodes import hold_nodes
-from mpm_core.initial import build_bodies
-from mpm_core.reach import Reach, nothing_in_reach, reach_of
-from mpm_core.reports import StepReport, step_report, together
-from mpm_core.resolution import refuse_coarse_stress
-from mpm_core.scene import Scene
-from mpm_core.sleeping import STEPS_PER_LOOK, Sleep
-from mpm_core.sorting import LONGEST_DRIFT
-from mpm_core.threads import use_threads
-from mpm_core.time_step import (
+from grainlaw.materials import SimulationError
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.grid.active_nodes import Reach, nothing_in_reach, reach_of
+from grainlaw.mpm_core.grid.grid import Grid
+from grainlaw.mpm_core.kernels import grid_update as momentum
+from grainlaw.mpm_core.kernels.body_force import BodyForce, scatter_body_force
+from grainlaw.mpm_core.kernels.elastic_energy import elastic_energy
+from grainlaw.mpm_core.kernels.held_nodes import hold_nodes
+from grainlaw.mpm_core.kernels.shape_functions import BASES
+from grainlaw.mpm_core.kernels.step_report import StepReport, step_report, together
+from grainlaw.mpm_core.kernels.volume_coupling import STEPS_PER_TIE
+from grainlaw.mpm_core.kernels.wall_clearance import Contact
+from grainlaw.mpm_core.kernels.walls import SIDES, Wall, WallKind, hold_at_walls, join_periodic, rows_in_reach
+from grainlaw.mpm_core.layout import LXX, LYY, X, Y
+from grainlaw.mpm_core.output.fields import chosen_fields
+from grainlaw.mpm_core.parallel.sorting import LONGEST_DRIFT
+from grainlaw.mpm_core.parallel.threads import use_threads
+from grainlaw.mpm_core.scene.initial_state import build_bodies
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.scene.resolution import refuse_coarse_stress
+from grainlaw.mpm_core.stepping.sleeping import STEPS_PER_LOOK, Sleep
+from grainlaw.mpm_core.stepping.time_step import (
     LARGEST_STRAIN,
     SMALLEST_SHARE,
     signal_bounds,
@@ -34,7 +35,6 @@ from mpm_core.time_step import (
     strain_rates,
     what_sets_the_step,
 )
-from mpm_core.volumes import STEPS_PER_TIE
 
 # A volumetric strain increment beyond which no explicit step can be right.
 LARGEST_INCREMENT = 0.5

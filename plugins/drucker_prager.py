@@ -28,7 +28,7 @@ keeps the tension of the apex, however far it opens.
 import math
 from typing import Annotated, Any, NamedTuple
 
-from materials import (
+from grainlaw.materials import (
     Law,
     Parameter,
     ParameterSet,

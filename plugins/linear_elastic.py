@@ -9,7 +9,7 @@ Valid for small elastic strains; the caller's objective rate carries large rotat
 
 from typing import Annotated, Any, NamedTuple
 
-from materials import (
+from grainlaw.materials import (
     Law,
     Parameter,
     ParameterSet,

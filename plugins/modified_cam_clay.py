@@ -8,7 +8,7 @@
 The printed Eq. 8 lacks the factor 1/3, without which it is not the gradient of F.
 
 Over a step, p and p_c follow their exponential laws exactly; the return to F = 0 is bracketed and cannot fail
-(`materials/cam_clay.py`).
+(`plugins/cam_clay/return_map.py`).
 
 Grains carry no tension. Where the pressure would fall below `stress_free_pressure` the point opens: its stress is zero
 and `gap` keeps the volumetric strain since, so that pressure returns only when the gap has closed.
@@ -22,8 +22,7 @@ Valid for quasi-static deformation: the law knows no rate.
 import math
 from typing import Annotated, Any, NamedTuple
 
-from materials import (
-    CamClay,
+from grainlaw.materials import (
     Law,
     Parameter,
     ParameterSet,
@@ -31,14 +30,10 @@ from materials import (
     SymmetricTensor,
     after_closing,
     assembled_stress,
-    cam_clay_small_step,
-    cam_clay_step,
     deviator,
     deviatoric_stress,
-    energy_of_cam_clay,
     hookimpl,
     isotropic,
-    log_volume_of_figure_1,
     longitudinal_wave_speed,
     pointwise,
     pressure,
@@ -46,6 +41,8 @@ from materials import (
     shear_modulus,
     volumetric_strain_rate,
 )
+from grainlaw.plugins.cam_clay.return_map import CamClay, cam_clay_step, energy_of_cam_clay, log_volume_of_figure_1
+from grainlaw.plugins.cam_clay.small_step import cam_clay_small_step
 
 
 class Parameters(NamedTuple):

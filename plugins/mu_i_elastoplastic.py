@@ -25,7 +25,7 @@ Valid for dense flow, free fall and reconsolidation of stiff grains; no dilatanc
 import math
 from typing import Annotated, Any, NamedTuple
 
-from materials import (
+from grainlaw.materials import (
     Law,
     Parameter,
     ParameterSet,
@@ -40,13 +40,12 @@ from materials import (
     half_norm,
     hookimpl,
     isotropic,
-    own_inertial_number_constant,
     pressure,
     scaled,
-    share_after_return,
     shear_modulus,
     stress_ratio,
 )
+from grainlaw.plugins.mu_i.friction import own_inertial_number_constant, share_after_return
 
 
 class Parameters(NamedTuple):

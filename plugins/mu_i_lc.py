@@ -25,7 +25,7 @@ Valid for dense flow at constant critical friction: no dilatancy, no memory of t
 import math
 from typing import Annotated, Any, NamedTuple
 
-from materials import (
+from grainlaw.materials import (
     Law,
     Parameter,
     ParameterSet,
@@ -41,10 +41,10 @@ from materials import (
     hookimpl,
     pressure,
     scaled,
-    share_after_return,
     shear_modulus,
     stress_ratio,
 )
+from grainlaw.plugins.mu_i.friction import share_after_return
 
 
 class Parameters(NamedTuple):

@@ -20,7 +20,7 @@ Conventions and range of validity: as `mu_i_lc`.
 import math
 from typing import Annotated, Any, NamedTuple
 
-from materials import (
+from grainlaw.materials import (
     Law,
     Parameter,
     ParameterSet,

@@ -20,8 +20,8 @@ A change of the shear rate moves the surface at once, p_c0 only as volume change
 Dissipation is (p (2p - p_c) + 2 q^2/M^2) dLambda = p p_c dLambda >= 0.
 
 A step. I is the plastic inertial number of the step, with p at its end, found together with the return to (1) between
-brackets (`materials/flowing_cam_clay_step.py`), for small steps by a fixed number of iterations
-(`materials/flowing_cam_clay_small_step.py`); (2) and (7) are in `materials/flowing_cam_clay.py`.
+brackets (`plugins/cam_clay/rate_dependent_return_map.py`), for small steps by a fixed number of iterations
+(`plugins/cam_clay/rate_dependent_small_step.py`); (2) and (7) are in `plugins/cam_clay/rate_dependent.py`.
 
 Grains carry no tension: opened points keep a gap, as in `modified_cam_clay`.
 
@@ -35,8 +35,7 @@ Valid from rest to dense flow, I below 1; beyond, collisions carry stress that (
 import math
 from typing import Annotated, Any, NamedTuple
 
-from materials import (
-    FlowingCamClay,
+from grainlaw.materials import (
     Law,
     Parameter,
     ParameterSet,
@@ -46,21 +45,20 @@ from materials import (
     assembled_stress,
     deviator,
     deviatoric_stress,
-    energy_of_cam_clay,
-    flowing_cam_clay_small_step,
-    flowing_cam_clay_step,
-    growth_of_surface,
     hookimpl,
     isotropic,
-    log_volume_of_figure_1,
     longitudinal_wave_speed,
-    own_inertial_number_constant,
     pointwise,
     pressure,
     scaled,
     shear_modulus,
     volumetric_strain_rate,
 )
+from grainlaw.plugins.cam_clay.rate_dependent import FlowingCamClay, growth_of_surface
+from grainlaw.plugins.cam_clay.rate_dependent_return_map import flowing_cam_clay_step
+from grainlaw.plugins.cam_clay.rate_dependent_small_step import flowing_cam_clay_small_step
+from grainlaw.plugins.cam_clay.return_map import energy_of_cam_clay, log_volume_of_figure_1
+from grainlaw.plugins.mu_i.friction import own_inertial_number_constant
 
 
 class Parameters(NamedTuple):

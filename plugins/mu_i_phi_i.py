@@ -34,7 +34,7 @@ Valid for dense flow of stiff grains, I below 0.5; pressure from collisions belo
 import math
 from typing import Annotated, Any, NamedTuple
 
-from materials import (
+from grainlaw.materials import (
     Law,
     Parameter,
     ParameterSet,
@@ -46,17 +46,16 @@ from materials import (
     energy_of_linear_compression,
     energy_of_shear,
     flowing_wave_speed,
-    friction_of_inertial_number,
     half_norm,
     hookimpl,
     isotropic,
-    own_inertial_number_constant,
     pointwise,
     pressure,
     scaled,
     shear_modulus,
     stress_ratio,
 )
+from grainlaw.plugins.mu_i.friction import friction_of_inertial_number, own_inertial_number_constant
 
 # Of the trial stress.
 TOLERANCE = 1e-12

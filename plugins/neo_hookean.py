@@ -15,7 +15,7 @@ Valid for J > 0 and steps of a few per cent of strain.
 import math
 from typing import Annotated, Any, NamedTuple
 
-from materials import (
+from grainlaw.materials import (
     Law,
     Parameter,
     ParameterSet,

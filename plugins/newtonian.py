@@ -18,7 +18,7 @@ Valid for speeds well below sqrt(K/rho_0): the density changes by (v/c)^2. A flu
 import math
 from typing import Annotated, Any, NamedTuple
 
-from materials import (
+from grainlaw.materials import (
     Law,
     Parameter,
     ParameterSet,

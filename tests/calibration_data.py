@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from validation.calibration.data import DataSet, Measured
-from validation.calibration.experiments import get_experiment
-from validation.calibration.model import ForwardModel, answer
+from grainlaw.materials.calibration.data import DataSet, Measured
+from grainlaw.materials.calibration.experiments import get_experiment
+from grainlaw.materials.calibration.model import ForwardModel, answer
 
 
 def planned(test, control, abscissa, standard_errors, **statements):

@@ -2,7 +2,7 @@
 
 import math
 
-from materials import SymmetricTensor, half_norm, scaled
+from grainlaw.materials import SymmetricTensor, half_norm, scaled
 
 
 def random_deviator(rng, q):

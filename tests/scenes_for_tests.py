@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import tomli_w
 
-from materials import registry
-from mpm_core import Scene, Simulation
-from mpm_core.columns import AFFINE, GRADIENT, VX, VY, X, Y
-from mpm_core.grid import COMPONENTS, MASS, OLD_VX, OLD_VY
+from grainlaw.materials import registry
+from grainlaw.mpm_core import Scene, Simulation
+from grainlaw.mpm_core.grid.grid import COMPONENTS, MASS, OLD_VX, OLD_VY
+from grainlaw.mpm_core.layout import AFFINE, GRADIENT, VX, VY, X, Y
 
 ELASTIC = {"bulk_modulus": 1e4, "poisson_ratio": 0.2}
 MU_I_LC = {
@@ -114,7 +114,7 @@ def momentum(simulation):
 
 def call_command_line(monkeypatch, *arguments):
     """Run the command `grainlaw` in this process; return its exit code."""
-    from grainlaw.cli import main
+    from grainlaw.cli.main import main
 
     monkeypatch.setattr(sys, "argv", ["grainlaw", *map(str, arguments)])
     with pytest.raises(SystemExit) as exit_:
@@ -128,7 +128,7 @@ PLUGIN = '''
 import math
 from typing import Annotated, NamedTuple
 
-from materials import Law, Parameter, SymmetricTensor, added, hookimpl, scaled, trace
+from grainlaw.materials import Law, Parameter, SymmetricTensor, added, hookimpl, scaled, trace
 
 
 class Parameters(NamedTuple):

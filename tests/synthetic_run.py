@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from mpm_core.output.frame import Field, Frame
-from mpm_core.output.frame_series import FrameSeries
-from mpm_core.output.history import HISTORY_COLUMNS, HistoryWriter
-from mpm_core.output.quantities import write_quantities
+from grainlaw.mpm_core.output.frame import Field, Frame
+from grainlaw.mpm_core.output.frame_series import FrameSeries
+from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, HistoryWriter
+from grainlaw.mpm_core.output.quantities import write_quantities
 
 FRAMES = 11
 FRAME_INTERVAL = 0.1

@@ -5,8 +5,8 @@ import math
 import pytest
 from scenes_for_tests import CAM_CLAY, COLUMN, changed
 
-from materials import InputError
-from mpm_core import Scene
+from grainlaw.materials import InputError
+from grainlaw.mpm_core import Scene
 
 
 def clay(ratio):

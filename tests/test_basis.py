@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 
-from mpm_core.basis import BASES, SMALLEST_MOMENT_AT_WALL, SMALLEST_MOMENT_OF_HATS, make_stencil
-from mpm_core.grid import NO_GHOSTS
+from grainlaw.mpm_core.grid.grid import NO_GHOSTS
+from grainlaw.mpm_core.kernels.shape_functions import (
+    BASES,
+    SMALLEST_MOMENT_AT_WALL,
+    SMALLEST_MOMENT_OF_HATS,
+    make_stencil,
+)
 
 CELLS = 6
 FIRST_NODE, LAST_NODE = 2, 2 + CELLS

@@ -13,9 +13,9 @@ from scenes_for_tests import CAM_CLAY, COLUMN, simulation
 from benchmarks.columns import advance_to, cell_size_for, make_steps, moving_column
 from benchmarks.roofline import Roofline
 from benchmarks.yardstick import Yardstick
-from mpm_core.columns import X, Y
-from mpm_core.threads import cores
-from validation.collapses import collapse
+from grainlaw.mpm_core.layout import X, Y
+from grainlaw.mpm_core.parallel.threads import cores
+from grainlaw.validation.collapses import collapse
 
 ROOT = Path(__file__).resolve().parent.parent
 CLAY = {"material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"}

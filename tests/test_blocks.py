@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from mpm_core.blocks import BLOCK, EQUAL_SHARES, blocks_of, points_of_block
-from mpm_core.lanes import MOST_AT_ONCE
+from grainlaw.mpm_core.kernels.simd.registers import MOST_AT_ONCE
+from grainlaw.mpm_core.parallel.blocks import BLOCK, EQUAL_SHARES, blocks_of, points_of_block
 
 COUNTS = [0, 1, 3, 108, BLOCK, BLOCK + 1, 10_800, 27_648, 97_200, 1_000_003]
 

@@ -8,11 +8,12 @@ import pytest
 from calibration_data import exact, planned, with_noise
 from scipy.stats import binom
 
-import validation
-from materials import InputError, friction_of_inertial_number, get_material
-from validation.calibration.findings import Findings
-from validation.calibration.fit import calibrate, fit_to_data
-from validation.cam_clay_solutions import EXAMPLE
+from grainlaw import validation
+from grainlaw.materials import InputError, get_material
+from grainlaw.materials.calibration.findings import Findings
+from grainlaw.materials.calibration.fit import calibrate, fit_to_data
+from grainlaw.plugins.mu_i.friction import friction_of_inertial_number
+from grainlaw.validation.cam_clay_solutions import EXAMPLE
 
 SHEAR_DATA = Path(validation.__file__).parent / "calibration" / "data" / "plane_shear_liggghts.csv"
 TRIALS = 200

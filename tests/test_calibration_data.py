@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from materials import InputError, get_material
-from validation.calibration.data import read_data
-from validation.calibration.experiments import EXPERIMENTS
-from validation.calibration.quantities import QUANTITIES
+from grainlaw.materials import InputError, get_material
+from grainlaw.materials.calibration.data import read_data
+from grainlaw.materials.calibration.experiments import EXPERIMENTS
+from grainlaw.materials.calibration.quantities import QUANTITIES
 
 LAW = get_material("modified_cam_clay")
 HEADER = "axial_strain [1],deviatoric_stress [Pa]"

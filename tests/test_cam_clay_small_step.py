@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from cam_clay_states import random_deviator, random_strain
 
-from materials import SymmetricTensor
-from materials.cam_clay import CamClay, cam_clay_step
-from materials.cam_clay_small_step import cam_clay_small_step
-from materials.registry import get_material
+from grainlaw.materials import SymmetricTensor
+from grainlaw.materials.registry import get_material
+from grainlaw.plugins.cam_clay.return_map import CamClay, cam_clay_step
+from grainlaw.plugins.cam_clay.small_step import cam_clay_small_step
 
 CONSTANTS = CamClay(1.2, 0.04, 0.008, 0.2)
 

@@ -5,8 +5,8 @@ import sys
 
 import pytest
 
-from grainlaw.element_command import TESTS
-from materials.element.catalogue import TEST_NAMES
+from grainlaw.cli.element_command import TESTS
+from grainlaw.materials.element.catalogue import TEST_NAMES
 
 FAST = ("--set", "time_step=0.1")
 

@@ -6,11 +6,11 @@ import sys
 
 import pytest
 
-from materials import get_material
+from grainlaw.materials import get_material
 
 FAULTY_PLUGIN = """
 from typing import Annotated, NamedTuple
-from materials import Law, Parameter, hookimpl
+from grainlaw.materials import Law, Parameter, hookimpl
 
 
 class Parameters(NamedTuple):
@@ -62,7 +62,7 @@ def test_json_agrees_with_the_declarations():
 def test_listing_does_not_load_the_compiler():
     code = (
         "import sys; sys.argv = ['grainlaw', 'materials']\n"
-        "from grainlaw.cli import main\n"
+        "from grainlaw.cli.main import main\n"
         "try:\n    main()\nexcept SystemExit:\n    pass\n"
         "print('loaded:', [name for name in ('numba', 'matplotlib', 'scipy', 'vtk', 'pyvista') if name in sys.modules])"
     )

@@ -15,7 +15,7 @@ from scenes_for_tests import (
     write_scene,
 )
 
-from mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.output.run_folder import RunFolder
 
 __all__ = ["fresh_registry"]
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from documentation import DOCS
 
-from materials import get_material, registry
-from materials.registry import Registry
-from validation.conformance.suite import CHECKS, QUICK, examine
+from grainlaw.materials import get_material, registry
+from grainlaw.materials.conformance.suite import CHECKS, QUICK, examine
+from grainlaw.materials.registry import Registry
 
 SOUND_LAW = (DOCS / "adding-a-law.md").read_text().partition("```python file=cemented_sand.py\n")[2].partition("```")[0]
 STRENGTH = "    strength = parameters.friction_coefficient * p + cohesion if p > 0.0 else 0.0\n"

@@ -5,8 +5,8 @@ from typing import Annotated, NamedTuple
 
 import pytest
 
-from materials import InputError, Parameter, StateVariable, checked_parameters
-from materials.declarations import DeclarationError, Interval, declared_fields
+from grainlaw.materials import InputError, Parameter, StateVariable, checked_parameters
+from grainlaw.materials.declarations import DeclarationError, Interval, declared_fields
 
 
 class Values(NamedTuple):

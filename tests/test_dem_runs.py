@@ -10,15 +10,15 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from grainlaw.cli import app
-from materials import InputError, SimulationError
-from validation.dem.batch import case_named
-from validation.dem.collapse import floor_of
-from validation.dem.packing import Packing, cut
-from validation.dem.programs import Program, failure, run_program
-from validation.dem.runs import Run, inputs_hash, runs_of
-from validation.dem_report.reference_set import REFERENCE
-from validation.grains.observation import read_observation
+from grainlaw.cli.main import app
+from grainlaw.materials import InputError, SimulationError
+from grainlaw.validation.dem.batch import case_named
+from grainlaw.validation.dem.collapse import floor_of
+from grainlaw.validation.dem.packing import Packing, cut
+from grainlaw.validation.dem.programs import Program, failure, run_program
+from grainlaw.validation.dem.runs import Run, inputs_hash, runs_of
+from grainlaw.validation.dem_report.reference_set import REFERENCE
+from grainlaw.validation.grains.observation import read_observation
 
 
 def test_both_codes_are_listed():
@@ -81,8 +81,8 @@ def test_cut_keeps_the_volume_below_the_plane():
 # The command itself with `sh` in the place of LIGGGHTS: it starts a process of its own and takes longer than the test.
 WITH_A_STAND_IN = """
 import sys
-from grainlaw.cli import main
-from validation.dem import programs, runs
+from grainlaw.cli.main import main
+from grainlaw.validation.dem import programs, runs
 
 stand_in = programs.Program("LIGGGHTS", "sh", "dash", ("-c", "sleep 300 & echo $$ $! > pids; wait"), "")
 runs.LIGGGHTS = runs.PROGRAMS["liggghts"] = stand_in

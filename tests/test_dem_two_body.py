@@ -4,9 +4,9 @@ import shutil
 
 import pytest
 
-from validation.dem.description import Contact
-from validation.dem.programs import PROGRAMS
-from validation.dem.two_body import exact, measured
+from grainlaw.validation.dem.description import Contact
+from grainlaw.validation.dem.programs import PROGRAMS
+from grainlaw.validation.dem.two_body import exact, measured
 
 
 @pytest.mark.parametrize("code", PROGRAMS)

@@ -13,14 +13,14 @@ import typer
 from documentation import DOCS, ROOT, page_script, run_page
 from pydantic import BaseModel
 
-from grainlaw.cli import app
+from grainlaw.cli.main import app
+from grainlaw.mpm_core.output.recorder import OWN_FILES
+from grainlaw.mpm_core.output.summary import RunSummary
 from grainlaw.reference.command_page import commands
 from grainlaw.reference.law_curves import picture
 from grainlaw.reference.law_pages import own_laws
 from grainlaw.reference.pages import PARTS, regenerated_pages
 from grainlaw.reference.scene_tables import description, models_in, scene_tables
-from mpm_core.output.summary import RunSummary
-from mpm_core.recorder import OWN_FILES
 
 PAGES = sorted(DOCS.glob("*.md"))
 # test_template_package.py follows adding-a-law.md in an environment of its own.
@@ -81,7 +81,7 @@ def test_every_scene_key_is_documented():
 
 
 def test_every_model_of_a_scene_is_in_the_reference():
-    from mpm_core.scene import Scene
+    from grainlaw.mpm_core.scene.model import Scene
 
     def nested(model: type[BaseModel]) -> set[type[BaseModel]]:
         inner = {part for info in model.model_fields.values() for part in models_in(info.annotation)}

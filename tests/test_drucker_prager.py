@@ -5,11 +5,20 @@ import math
 import numpy as np
 import pytest
 
-from materials import SymmetricTensor, contraction, get_material, half_norm, isotropic, pressure, shear_modulus, trace
-from materials.element.catalogue import get_element_test
-from materials.element.run import run_element_test
-from materials.element.specimen import prepared
-from materials.tensor import added, deviator, scaled
+from grainlaw.materials import (
+    SymmetricTensor,
+    contraction,
+    get_material,
+    half_norm,
+    isotropic,
+    pressure,
+    shear_modulus,
+    trace,
+)
+from grainlaw.materials.element.catalogue import get_element_test
+from grainlaw.materials.element.run import run_element_test
+from grainlaw.materials.element.specimen import prepared
+from grainlaw.materials.tensor import added, deviator, scaled
 
 LAW = get_material("drucker_prager")
 BARS = LAW.parameter_sets["aluminium_bars"].parameters

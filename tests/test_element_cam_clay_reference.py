@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from materials.element.catalogue import get_element_test
-from materials.element.run import run_element_test
-from materials.element.specimen import prepared
+from grainlaw.materials.element.catalogue import get_element_test
+from grainlaw.materials.element.run import run_element_test
+from grainlaw.materials.element.specimen import prepared
 
 M, LAMBDA, KAPPA, NU, P0 = 1.2, 0.10, 0.02, 0.3, 200e3
 SHEAR_RATIO = 1.5 * (1.0 - 2.0 * NU) / (1.0 + NU)
@@ -32,10 +32,6 @@ def element_test(name, **assignments):
 def shear_strain(result):
     """eps_s = 2/3 (eps_axial - eps_radial), compression-positive."""
     return 2.0 / 3.0 * (result.strain[:, 0] - result.strain[:, 1])
-
-
-def volumetric_strain(result):
-    return result.log_specific_volume[0] - result.log_specific_volume
 
 
 def plastic_shear_strain(eta, volumetric_rate):
@@ -66,7 +62,7 @@ def undrained_pressure(eta):
 def test_drained_path_passes_the_golden_state_at_a_shear_strain_of_a_tenth():
     result = element_test("triaxial-drained", final_strain=0.15, time_step=2e-3)
     shear, volumetric = (
-        np.interp(0.1, shear_strain(result), values) for values in (result.deviatoric_stress, volumetric_strain(result))
+        np.interp(0.1, shear_strain(result), values) for values in (result.deviatoric_stress, result.volumetric_strain)
     )
     assert shear == pytest.approx(272.288e3, rel=1e-3)
     assert volumetric == pytest.approx(0.07547, rel=1e-3)
@@ -77,7 +73,7 @@ def test_drained_path_ends_in_the_golden_critical_state():
     result = element_test("triaxial-drained", final_strain=1.5, time_step=5e-3)
     assert result.deviatoric_stress[-1] == pytest.approx(400e3, rel=1e-3)
     assert result.pressure[-1] == pytest.approx(333.33e3, rel=1e-3)
-    assert volumetric_strain(result)[-1] == pytest.approx(0.10653, rel=1e-3)
+    assert result.volumetric_strain[-1] == pytest.approx(0.10653, rel=1e-3)
 
 
 def test_radial_stress_is_held_on_the_drained_path():
@@ -103,7 +99,7 @@ def test_undrained_path_follows_its_equation_everywhere():
 
 def test_volume_stays_on_the_undrained_path():
     result = element_test("triaxial-undrained", final_strain=0.3)
-    assert np.max(np.abs(volumetric_strain(result))) < 1e-12
+    assert np.max(np.abs(result.volumetric_strain)) < 1e-12
 
 
 def test_coefficient_of_earth_pressure_at_rest():
@@ -113,7 +109,7 @@ def test_coefficient_of_earth_pressure_at_rest():
 
 def test_isotropic_compression_follows_its_line_exactly():
     result = element_test("isotropic", final_strain=0.2, time_step=0.1)
-    assert np.allclose(volumetric_strain(result), LAMBDA * np.log(result.pressure / P0), rtol=1e-9, atol=1e-12)
+    assert np.allclose(result.volumetric_strain, LAMBDA * np.log(result.pressure / P0), rtol=1e-9, atol=1e-12)
 
 
 def convergence_order(errors, ratio):

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from materials import friction_of_inertial_number
-from materials.element.catalogue import get_element_test
-from materials.element.lines import compression_lines
-from materials.element.run import run_element_test
-from materials.element.specimen import prepared
+from grainlaw.materials.element.catalogue import get_element_test
+from grainlaw.materials.element.lines import compression_lines
+from grainlaw.materials.element.run import run_element_test
+from grainlaw.materials.element.specimen import prepared
+from grainlaw.plugins.mu_i.friction import friction_of_inertial_number
 
 END_OF_STAGE_1 = 2.0
 

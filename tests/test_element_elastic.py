@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from materials import SimulationError, get_material, scaled
-from materials.element.catalogue import ELEMENT_TESTS, get_element_test
-from materials.element.run import run_element_test
-from materials.element.search import narrowed, search_from
-from materials.element.specimen import Specimen, prepared
+from grainlaw.materials import SimulationError, get_material, scaled
+from grainlaw.materials.element.catalogue import ELEMENT_TESTS, get_element_test
+from grainlaw.materials.element.run import run_element_test
+from grainlaw.materials.element.search import narrowed, search_from
+from grainlaw.materials.element.specimen import Specimen, prepared
 
 YOUNG, NU, P0 = 1000.0, 0.3, 500.0
 LAME = YOUNG * NU / ((1.0 + NU) * (1.0 - 2.0 * NU))

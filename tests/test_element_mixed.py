@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from materials import InputError, SimulationError
-from materials.element.catalogue import get_element_test
-from materials.element.mixed import mixed_test, read_control
-from materials.element.run import run_element_test
-from materials.element.specimen import prepared
+from grainlaw.materials import InputError, SimulationError
+from grainlaw.materials.element.catalogue import get_element_test
+from grainlaw.materials.element.mixed import mixed_test, read_control
+from grainlaw.materials.element.run import run_element_test
+from grainlaw.materials.element.specimen import prepared
 
 DRAINED = """
 time_step = 0.05

@@ -5,10 +5,10 @@ import csv
 import numpy as np
 import pytest
 
-from materials import InputError, get_material
-from materials.element.catalogue import get_element_test
-from materials.element.run import run_element_test
-from materials.element.specimen import prepared
+from grainlaw.materials import InputError, get_material
+from grainlaw.materials.element.catalogue import get_element_test
+from grainlaw.materials.element.run import run_element_test
+from grainlaw.materials.element.specimen import prepared
 
 SHEAR = get_element_test("constant-pressure-shear")
 

@@ -8,8 +8,8 @@ import pytest
 from scenes_for_tests import BLOCK, COLUMN, simulation
 from test_walls import G, block_on_a_plane
 
-from mpm_core.columns import AFFINE, AXX, LXX, SXY, SYY, VX, X
-from mpm_core.elastic_energy import elastic_energy
+from grainlaw.mpm_core.kernels.elastic_energy import elastic_energy
+from grainlaw.mpm_core.layout import AFFINE, AXX, LXX, SXY, SYY, VX, X
 
 # Strains of the bar are a thousandth, the share by which elasticity in rate form misses an energy.
 SPEED = 0.005

@@ -4,19 +4,19 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from grainlaw.cli import app
-from materials import get_material
-from plugins import mu_i_phi_i
-from validation.calibration.data import read_data
-from validation.calibration.fit import calibrate
-from validation.calibration.model import ForwardModel, answer
-from validation.dem.batch import case_named
-from validation.dem.coverage import missing_runs, present_runs, seeds_told
-from validation.dem.runs import Run, runs_of
-from validation.dem_report.fitting_data import FLOW_FILE, START_FILE, START_STRAINS, write_data
-from validation.dem_report.judged_laws import JUDGED_LAWS
-from validation.dem_report.reference_set import REFERENCE, read_reference_set
-from validation.dem_report.variants import CONTROLS, LIMITS
+from grainlaw.cli.main import app
+from grainlaw.materials import get_material
+from grainlaw.materials.calibration.data import read_data
+from grainlaw.materials.calibration.fit import calibrate
+from grainlaw.materials.calibration.model import ForwardModel, answer
+from grainlaw.plugins import mu_i_phi_i
+from grainlaw.validation.dem.batch import case_named
+from grainlaw.validation.dem.coverage import missing_runs, present_runs, seeds_told
+from grainlaw.validation.dem.runs import Run, runs_of
+from grainlaw.validation.dem_report.fitting_data import FLOW_FILE, START_FILE, START_STRAINS, write_data
+from grainlaw.validation.dem_report.judged_laws import JUDGED_LAWS
+from grainlaw.validation.dem_report.reference_set import REFERENCE, read_reference_set
+from grainlaw.validation.dem_report.variants import CONTROLS, LIMITS
 
 LAW = "mu_i_phi_i"
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from cam_clay_states import random_deviator, random_strain
 
-from materials import SymmetricTensor, half_norm
-from materials.flowing_cam_clay import FlowingCamClay, growth_of_surface, steady_stress_ratio
-from materials.flowing_cam_clay_small_step import flowing_cam_clay_small_step
-from materials.flowing_cam_clay_step import flowing_cam_clay_step
-from materials.registry import get_material
+from grainlaw.materials import SymmetricTensor, half_norm
+from grainlaw.materials.registry import get_material
+from grainlaw.plugins.cam_clay.rate_dependent import FlowingCamClay, growth_of_surface, steady_stress_ratio
+from grainlaw.plugins.cam_clay.rate_dependent_return_map import flowing_cam_clay_step
+from grainlaw.plugins.cam_clay.rate_dependent_small_step import flowing_cam_clay_small_step
 
 CONSTANTS = FlowingCamClay(1.2, 2.16, 0.279, 2.36, 0.04, 0.008, 0.2, 2450.0, 0.005)
 

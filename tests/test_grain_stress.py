@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from materials import InputError
-from validation.grains.coarse_graining import column_lattice, stress
-from validation.grains.love_weber import stress_of_contacts
-from validation.grains.observation import read_observation, write_observation
-from validation.grains.observe import observe_folder
-from validation.grains.readers.contacts import NAMES, read_contacts
-from validation.grains.snapshot import StressMoments
+from grainlaw.materials import InputError
+from grainlaw.validation.grains.coarse_graining import column_lattice, stress
+from grainlaw.validation.grains.love_weber import stress_of_contacts
+from grainlaw.validation.grains.observation import read_observation, write_observation
+from grainlaw.validation.grains.observe import observe_folder
+from grainlaw.validation.grains.readers.contacts import NAMES, read_contacts
+from grainlaw.validation.grains.snapshot import StressMoments
 
 DIAMETER, DEPTH, COUNT = 0.015, 0.06, 80
 GRAVITY, DENSITY = 9.81, 2450.0

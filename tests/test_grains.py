@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from grains_for_tests import DENSITY, DEPTH, HALF_WIDTHS, HEIGHTS, RADIUS, SPACING, WRITERS, blocks, write_run
 
-from materials import InputError
-from validation.grains.coarse_graining import Kernel, column_lattice
-from validation.grains.distance import Verdict, compare, profile_distance, verdict
-from validation.grains.observation import read_observation, write_observation
-from validation.grains.observe import observe_folder
-from validation.grains.reference_file import load_reference
+from grainlaw.materials import InputError
+from grainlaw.validation.grains.coarse_graining import Kernel, column_lattice
+from grainlaw.validation.grains.distance import Verdict, compare, profile_distance, verdict
+from grainlaw.validation.grains.observation import read_observation, write_observation
+from grainlaw.validation.grains.observe import observe_folder
+from grainlaw.validation.grains.reference_file import load_reference
 
 SOLID_FRACTION = 4.0 / 3.0 * np.pi * RADIUS**3 / SPACING**3
 SMALL_COLLAPSE = Path(__file__).parent / "small_collapse"

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, CAM_CLAY, COLUMN, ELASTIC, MU_I_LC, changed, simulation
 
-from materials import InputError
-from mpm_core import Scene
-from mpm_core.columns import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
-from mpm_core.initial import build_bodies
+from grainlaw.materials import InputError
+from grainlaw.mpm_core import Scene
+from grainlaw.mpm_core.layout import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
+from grainlaw.mpm_core.scene.initial_state import build_bodies
 
 WEIGHT = 1500.0 * 9.8
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from numba import typeof, types
 
-from materials import SymmetricTensor, get_material, isotropic, registry
-from materials.compilation import make_single_step, pointwise_law
+from grainlaw.materials import SymmetricTensor, get_material, isotropic, registry
+from grainlaw.materials.compilation import make_single_step, pointwise_law
 
 LAWS_AND_SETS = [
     (name, parameter_set) for name, entry in registry().laws.items() for parameter_set in entry.law.parameter_sets

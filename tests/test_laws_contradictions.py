@@ -2,7 +2,7 @@
 
 import pytest
 
-from materials import InputError, get_material
+from grainlaw.materials import InputError, get_material
 
 CASES = [
     ("drucker_prager", {"dilatancy_angle": 1.0}, "dilatancy_angle = 1 must not be larger than friction_angle"),

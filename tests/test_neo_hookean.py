@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, changed, simulation
 
-from materials import SymmetricTensor, get_material, isotropic
-from mpm_core.columns import LXX, LYY, SXX, SXY, SYY, SZZ
+from grainlaw.materials import SymmetricTensor, get_material, isotropic
+from grainlaw.mpm_core.layout import LXX, LYY, SXX, SXY, SYY, SZZ
 
 LAW = get_material("neo_hookean")
 PARAMETERS = LAW.parameters(bulk_modulus=8e5, poisson_ratio=0.3)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from materials import SymmetricTensor, get_material, isotropic, pressure
+from grainlaw.materials import SymmetricTensor, get_material, isotropic, pressure
 
 LAW = get_material("newtonian")
 GLYCEROL = LAW.parameter_sets["glycerol"].parameters

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mpm_core.observables import pile_shape
+from grainlaw.mpm_core.output.observables import pile_shape
 
 
 def body(x, y, point_mass=2.0, density=1000.0):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from mpm_core.output import atomic
+from grainlaw.materials import atomic
 
 
 def test_text_and_bytes_arrive_and_leave_nothing_beside(tmp_path):

@@ -10,12 +10,12 @@ from matplotlib.image import imread
 from matplotlib.text import Text
 from synthetic_run import COLUMN_HEIGHT, COLUMN_WIDTH, SPACING, frame, write_run
 
-from materials import InputError
-from mpm_core.output.picture_style import color_scale, field_label, paper_picture, scalar_values
-from mpm_core.output.pictures import draw_frame, draw_history, write_run_pictures
-from mpm_core.output.point_image import ColorScale, draw_points, point_spacing
-from mpm_core.output.run_folder import RunFolder
-from mpm_core.output.snapshots import draw_snapshots, normalized_runout
+from grainlaw.materials import InputError
+from grainlaw.mpm_core.output.picture_style import color_scale, field_label, paper_picture, scalar_values
+from grainlaw.mpm_core.output.pictures import draw_frame, draw_history, write_run_pictures
+from grainlaw.mpm_core.output.point_image import ColorScale, draw_points, point_spacing
+from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.output.snapshots import draw_snapshots, normalized_runout
 
 
 def drawn(positions, values):
@@ -95,7 +95,7 @@ def test_labels_of_a_tall_picture_do_not_overlap_nor_leave_it(tmp_path, monkeypa
             yield figure
         pictures.append(figure)
 
-    monkeypatch.setattr("mpm_core.output.snapshots.paper_picture", kept_picture)
+    monkeypatch.setattr("grainlaw.mpm_core.output.snapshots.paper_picture", kept_picture)
     names = [f"a_long_name_of_a_law_{count}" for count in range(6)]
     draw_snapshots([(name, RunFolder(write_run(tmp_path / name))) for name in names], tmp_path / "six.png")
     (figure,) = pictures

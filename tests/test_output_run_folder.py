@@ -7,10 +7,10 @@ import pytest
 from pydantic import ValidationError
 from synthetic_run import FRAMES, frame, history_row, write_run
 
-from materials import InputError
-from mpm_core.output.history import HISTORY_COLUMNS, HistoryWriter, drop_rows_after, read_history
-from mpm_core.output.run_folder import RunFolder
-from mpm_core.output.summary import RunSummary, read_summary, write_summary
+from grainlaw.materials import InputError
+from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, HistoryWriter, drop_rows_after, read_history
+from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.output.summary import RunSummary, read_summary, write_summary
 
 SUMMARY = {
     "scene": "collapse",

@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
-from mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame, drop_after
+from grainlaw.mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame, drop_after
 
 STEPS = 5
 
@@ -75,7 +75,7 @@ def test_a_run_killed_while_it_appends_keeps_the_earlier_steps(path):
 import os, signal, sys, h5py
 from pathlib import Path
 from synthetic_run import frame
-from mpm_core.output import vtkhdf
+from grainlaw.mpm_core.output import vtkhdf
 count = h5py.AttributeManager.__setitem__
 def die(attributes, name, value):
     os.kill(os.getpid(), signal.SIGKILL)

@@ -9,10 +9,10 @@ from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkCommonDataModel import VTK_VERTEX
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-from materials import InputError
-from mpm_core.output.frame import Frame
-from mpm_core.output.frame_series import FrameSeries, read_collection
-from mpm_core.output.vtu import read_vtu, write_vtu
+from grainlaw.materials import InputError
+from grainlaw.mpm_core.output.frame import Frame
+from grainlaw.mpm_core.output.frame_series import FrameSeries, read_collection
+from grainlaw.mpm_core.output.vtu import read_vtu, write_vtu
 
 
 @pytest.fixture(scope="module")

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numba import njit, prange
 
-from mpm_core.parts import next_part, shares_of, threads_of
-from mpm_core.threads import cores, use_threads
+from grainlaw.mpm_core.parallel.threads import cores, use_threads
+from grainlaw.mpm_core.parallel.work_sharing import next_part, shares_of, threads_of
 
 
 @njit

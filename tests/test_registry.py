@@ -7,16 +7,16 @@ from textwrap import dedent
 
 import pytest
 
-from materials import HOOK_VERSION, InputError, get_material, registry
-from materials.law import OLDEST_HOOK_VERSION
-from materials.registry import Registry
+from grainlaw.materials import HOOK_VERSION, InputError, get_material, registry
+from grainlaw.materials.law import OLDEST_HOOK_VERSION
+from grainlaw.materials.registry import Registry
 
 LAW_FILE = '''
 """Linear elasticity under another name, to be broken in one place at a time."""
 
 from typing import Annotated, NamedTuple
 
-from materials import Law, Parameter, ParameterSet, StateVariable, SymmetricTensor, added, hookimpl, scaled
+from grainlaw.materials import Law, Parameter, ParameterSet, StateVariable, SymmetricTensor, added, hookimpl, scaled
 
 
 class Parameters(NamedTuple):
@@ -157,7 +157,7 @@ def test_raising_hook_is_refused(tmp_path):
         ("x = 1", "implements no hook"),
         (
             """
-            from materials import hookimpl
+            from grainlaw.materials import hookimpl
             @hookimpl
             def grainlaw_materials():
                 return [1]
@@ -166,7 +166,7 @@ def test_raising_hook_is_refused(tmp_path):
         ),
         (
             """
-            from materials import hookimpl
+            from grainlaw.materials import hookimpl
             @hookimpl
             def grainlaw_materails():
                 return []
@@ -196,7 +196,7 @@ def test_missing_file_is_refused(tmp_path):
 
 def test_broken_installed_plugin_stops_no_other(monkeypatch):
     broken = EntryPoint("broken", "grainlaw_test_of_an_absent_module", "grainlaw.materials")
-    sound = EntryPoint("mu_i_lc", "plugins.mu_i_lc", "grainlaw.materials")
+    sound = EntryPoint("mu_i_lc", "grainlaw.plugins.mu_i_lc", "grainlaw.materials")
     monkeypatch.setattr(sys.modules[Registry.__module__], "entry_points", lambda group: [broken, sound])
     found = Registry()
     found.load_entry_points()
@@ -211,9 +211,9 @@ def test_unknown_law_names_the_nearest():
 
 
 def test_law_that_does_not_compile_is_refused_by_name(tmp_path):
-    from materials.element.catalogue import get_element_test
-    from materials.element.run import run_element_test
-    from materials.element.specimen import Specimen
+    from grainlaw.materials.element.catalogue import get_element_test
+    from grainlaw.materials.element.run import run_element_test
+    from grainlaw.materials.element.specimen import Specimen
 
     found = Registry()
     found.load_file(plugin_file(tmp_path, body='print({}, file=None, sep="".join(sorted("b")), end="")'))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mpm_core.rehearsal import FIRST_STEPS, _growth
+from grainlaw.mpm_core.stepping.rehearsal import FIRST_STEPS, _growth
 
 COMPILING = [5.0] * FIRST_STEPS
 

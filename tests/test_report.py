@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from grainlaw.cli import app
-from mpm_core import Scene, run
-from validation.dem_report.own_grains import judged_runs, write_page
-from validation.dem_report.stored import SECTIONS, read_sections
-from validation.dem_report.whole_report import write_whole_report
+from grainlaw.cli.main import app
+from grainlaw.mpm_core import Scene, run
+from grainlaw.validation.dem_report.own_grains import judged_runs, write_page
+from grainlaw.validation.dem_report.stored import SECTIONS, read_sections
+from grainlaw.validation.dem_report.whole_report import write_whole_report
 
 GRAINS = Path(__file__).parent / "small_collapse"
 COMMAND = "grainlaw compare column --dem grains --out against"

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 from scenes_for_tests import COLUMN, call_command_line, changed, write_scene
 
-from materials import InputError
-from mpm_core import Scene, recorder, run
-from mpm_core.output.frame_series import read_collection
-from mpm_core.output.history import read_history
+from grainlaw.materials import InputError
+from grainlaw.mpm_core import Scene, run
+from grainlaw.mpm_core.output import recorder
+from grainlaw.mpm_core.output.frame_series import read_collection
+from grainlaw.mpm_core.output.history import read_history
 
 OUTPUTS = {
     "vtu": {"vtu": True},

@@ -18,12 +18,12 @@ from scenes_for_tests import (
     write_scene,
 )
 
-from materials import InputError, SimulationError
-from mpm_core import Scene, run
-from mpm_core.columns import AFFINE, AXX, LXX, VX, X, Y
-from mpm_core.output.frame_series import read_collection
-from mpm_core.output.history import HISTORY_COLUMNS, read_history
-from mpm_core.output.run_folder import RunFolder
+from grainlaw.materials import InputError, SimulationError
+from grainlaw.mpm_core import Scene, run
+from grainlaw.mpm_core.layout import AFFINE, AXX, LXX, VX, X, Y
+from grainlaw.mpm_core.output.frame_series import read_collection
+from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, read_history
+from grainlaw.mpm_core.output.run_folder import RunFolder
 
 __all__ = ["fresh_registry"]
 

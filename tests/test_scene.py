@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from scenes_for_tests import BLOCK, COLUMN, ELASTIC, changed, write_scene
 
-from materials import InputError
-from mpm_core import Scene
-from mpm_core.initial import build_bodies
+from grainlaw.materials import InputError
+from grainlaw.mpm_core import Scene
+from grainlaw.mpm_core.scene.initial_state import build_bodies
 
 SHIPPED = sorted((Path(__file__).parent.parent / "scenes").glob("*.toml"))
 

@@ -8,9 +8,9 @@ import pytest
 from pydantic import ValidationError
 from scenes_for_tests import BLOCK, changed, write_scene
 
-from materials import InputError
-from mpm_core import Scene
-from mpm_core.shapes import Disc, MeshRegion, Polygon, Rectangle, lattice
+from grainlaw.materials import InputError
+from grainlaw.mpm_core import Scene
+from grainlaw.mpm_core.scene.shapes import Disc, MeshRegion, Polygon, Rectangle, lattice
 
 ORIGIN, CELL = (0.0, 0.0), 0.05
 L_SHAPE = [(0.0, 0.0), (0.6, 0.0), (0.6, 0.2), (0.2, 0.2), (0.2, 0.5), (0.0, 0.5)]

@@ -9,13 +9,13 @@ from scenes_for_tests import BLOCK, CAM_CLAY, COLUMN, changed, simulation
 from test_laws_compiled import random_strain_rates, start
 
 from benchmarks.columns import advance_to
-from materials import InputError, SymmetricTensor, registry
-from materials.compilation import make_single_step, pointwise_law
-from materials.precision import PRECISIONS, as_numbers
-from materials.single_precision import in_single, nearest_single
-from mpm_core.columns import SXX
-from mpm_core.observables import pile_shape
-from mpm_core.places import places_of, put_places
+from grainlaw.materials import InputError, SymmetricTensor, registry
+from grainlaw.materials.compilation import make_single_step, pointwise_law
+from grainlaw.materials.precision import PRECISIONS, as_numbers
+from grainlaw.materials.single_precision import in_single, nearest_single
+from grainlaw.mpm_core.kernels.positions import places_of, put_places
+from grainlaw.mpm_core.layout import SXX
+from grainlaw.mpm_core.output.observables import pile_shape
 
 LAWS = registry().laws
 THAT_HOLD = [name for name, entry in LAWS.items() if entry.law.holds_in_single]

@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, CAM_CLAY, COLUMN, changed, simulation
 
-from materials import InputError
-from mpm_core import Scene, run, sleeping
-from mpm_core.columns import VX, VY
-from mpm_core.grid import COMPONENTS, MASS, PX, PY
-from mpm_core.observables import pile_shape
-from mpm_core.output.checkpoint import Clock, read_checkpoint, write_checkpoint
-from mpm_core.output.history import read_history
-from validation.scenes import advance
+from grainlaw.materials import InputError
+from grainlaw.mpm_core import Scene, run
+from grainlaw.mpm_core.grid.grid import COMPONENTS, MASS, PX, PY
+from grainlaw.mpm_core.layout import VX, VY
+from grainlaw.mpm_core.output.checkpoint import Clock, read_checkpoint, write_checkpoint
+from grainlaw.mpm_core.output.history import read_history
+from grainlaw.mpm_core.output.observables import pile_shape
+from grainlaw.mpm_core.stepping import sleeping
+from grainlaw.validation.scenes import advance
 
 SPEED = 2e-3
 PILE = changed(COLUMN, {"material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"})

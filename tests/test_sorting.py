@@ -5,10 +5,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from mpm_core.basis import BASES
-from mpm_core.blocks import EQUAL_SHARES
-from mpm_core.columns import FIRST_STATE, X, Y
-from mpm_core.sorting import sort_by_stencil
+from grainlaw.mpm_core.kernels.shape_functions import BASES
+from grainlaw.mpm_core.layout import FIRST_STATE, X, Y
+from grainlaw.mpm_core.parallel.blocks import EQUAL_SHARES
+from grainlaw.mpm_core.parallel.sorting import sort_by_stencil
 
 CELL = 0.1
 # Heights [cells] of a pile over the column of cells, of some number of columns.

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, simulation
 
-from mpm_core.columns import DENSITY, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ
-from mpm_core.stress import INTERNAL_WORK
+from grainlaw.mpm_core.kernels.stress_update import INTERNAL_WORK
+from grainlaw.mpm_core.layout import DENSITY, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ
 
 
 def one_body(**changes):

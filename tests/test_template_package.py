@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 from documentation import DOCS, ROOT, run_page
 
-SOURCES = ("materials", "plugins", "mpm_core", "validation", "grainlaw", "pyproject.toml", "README.md")
+SOURCES = ("materials", "plugins", "mpm_core", "validation", "scenes", "grainlaw", "pyproject.toml", "README.md")
 # pip reads 0 as "no isolation": the option that it stands for is a negative one.
 PIP_SETTINGS = {"PIP_NO_BUILD_ISOLATION": "0", "PIP_NO_DEPS": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
 
@@ -62,7 +62,7 @@ def test_wheel_holds_the_laws_and_the_template(installation):
     assert "plugins/mu_i_lc.py" in names
     template = {path.name for path in (ROOT / "plugins" / "template").iterdir() if path.is_file()}
     assert {name.removeprefix("plugins/template/") for name in names if "/template/" in name} == template
-    assert "validation/calibration/data/plane_shear_liggghts.csv" in names
+    assert "materials/calibration/data/plane_shear_liggghts.csv" in names
     assert {name.partition("/")[0] for name in names if ".dist-info" not in name} == set(SOURCES[:5])
 
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, CAM_CLAY, ELASTIC, simulation
 
-from materials import InputError, SimulationError, get_material
-from mpm_core.columns import AXX, AYY, LXX, LYY, VX, VY, X, Y
-from mpm_core.run import next_step, run
-from mpm_core.scene import Scene
-from mpm_core.time_step import LARGEST_STRAIN, SMALLEST_SHARE, signal_bounds
+from grainlaw.materials import InputError, SimulationError, get_material
+from grainlaw.mpm_core.layout import AXX, AYY, LXX, LYY, VX, VY, X, Y
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.stepping.run import next_step, run
+from grainlaw.mpm_core.stepping.time_step import LARGEST_STRAIN, SMALLEST_SHARE, signal_bounds
 
 
 def growth(poisson_ratio, share, place, steps=24):

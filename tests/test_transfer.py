@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, COLUMN, momentum, node_mass_and_momentum, set_affine_velocity, simulation
 
-from materials.precision import PRECISIONS
-from mpm_core.basis import BASES
-from mpm_core.columns import AFFINE, LXY, LYX, LYY, SXX, SXY, VX, VY, X, Y
+from grainlaw.materials.precision import PRECISIONS
+from grainlaw.mpm_core.kernels.shape_functions import BASES
+from grainlaw.mpm_core.layout import AFFINE, LXY, LYX, LYY, SXX, SXY, VX, VY, X, Y
 
 BASIS_NAMES = list(BASES)
 # A hair above no step at all: the transfers happen, the stress and the positions stay.

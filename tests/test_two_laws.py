@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from scenes_for_tests import CAM_CLAY, COLUMN, MU_I_LC
 
-from materials import get_material
-from mpm_core import Scene, Simulation
+from grainlaw.materials import get_material
+from grainlaw.mpm_core import Scene, Simulation
 
 STEPS, DT = 60, 2e-4
 LAWS = {"mu_i_lc": MU_I_LC, "modified_cam_clay": CAM_CLAY}
@@ -72,9 +72,9 @@ def test_code_of_two_laws_from_the_disk_cache_is_not_mixed_up():
 
 # One compiled step of the fluid of each of some law files; prints where the last of them ends.
 STEP_OF_FILES = (
-    "import sys; from pathlib import Path; from materials import SymmetricTensor, isotropic; "
-    "from materials.registry import Registry; "
-    "from materials.compilation import make_single_step, pointwise_law\n"
+    "import sys; from pathlib import Path; from grainlaw.materials import SymmetricTensor, isotropic; "
+    "from grainlaw.materials.registry import Registry; "
+    "from grainlaw.materials.compilation import make_single_step, pointwise_law\n"
     "for path in map(Path, sys.argv[1:]):\n"
     "    found = Registry(); found.load_file(path); law = found.get('newtonian').law\n"
     "    values = law.parameter_sets['glycerol'].parameters; stress = isotropic(-1.0)\n"

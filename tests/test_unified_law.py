@@ -2,9 +2,9 @@
 
 import pytest
 
-from validation.case import Effort
-from validation.catalogue import get_case
-from validation.result import run_case
+from grainlaw.validation.case import Effort
+from grainlaw.validation.catalogue import get_case
+from grainlaw.validation.result import run_case
 
 
 @pytest.mark.parametrize(

@@ -5,9 +5,9 @@ import json
 import pytest
 from scenes_for_tests import call_command_line
 
-from validation import catalogue
-from validation.case import Effort
-from validation.result import run_case
+from grainlaw.validation import catalogue
+from grainlaw.validation.case import Effort
+from grainlaw.validation.result import run_case
 
 # The cases that run one material point, fast enough for every test run.
 POINT_CASES = (
@@ -55,7 +55,7 @@ def test_two_cases_with_a_report(monkeypatch, tmp_path, capsys):
 
 
 def test_a_failing_case_is_exit_code_1(monkeypatch, capsys):
-    monkeypatch.setattr("validation.cases.opening_and_closing.BAND", 0.0)
+    monkeypatch.setattr("grainlaw.validation.cases.opening_and_closing.BAND", 0.0)
     assert call_command_line(monkeypatch, "validate", "opening_and_closing", "--quick") == 1
     assert "0 of 1 cases pass" in capsys.readouterr().out
 

@@ -6,12 +6,12 @@ from xml.etree import ElementTree
 
 import pytest
 
-from materials import SimulationError
-from validation.case import Case, Convergence, Effort, Evidence, Figure, curve, relative_error, upper_bound
-from validation.report.content import content
-from validation.report.junit import junit
-from validation.report.write import write_report
-from validation.result import run_case
+from grainlaw.materials import SimulationError
+from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, curve, relative_error, upper_bound
+from grainlaw.validation.report.content import content
+from grainlaw.validation.report.junit import junit
+from grainlaw.validation.report.write import write_report
+from grainlaw.validation.result import run_case
 
 WITHIN = relative_error("speed", "m/s", 1.0005, 1.0, 1e-3)
 OUTSIDE = relative_error("speed", "m/s", 1.002, 1.0, 1e-3)

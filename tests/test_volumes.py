@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, MU_I_LC, set_affine_velocity, simulation
 
-from mpm_core.basis import BASES, make_stencil
-from mpm_core.columns import CROWDING, DENSITY, LXY, MEAN_AROUND, SXX, SXY, SYY, SZZ, VX, X, Y
-from mpm_core.grid import COMPONENTS, GHOSTS, NODE_CROWDING, Grid
-from mpm_core.volumes import (
+from grainlaw.mpm_core.grid.grid import COMPONENTS, GHOSTS, NODE_CROWDING, Grid
+from grainlaw.mpm_core.kernels.shape_functions import BASES, make_stencil
+from grainlaw.mpm_core.kernels.volume_coupling import (
     NEARLY_FULL,
     STEPS_PER_TIE,
     closing_strain,
@@ -16,6 +15,7 @@ from mpm_core.volumes import (
     evening_strain,
     spreading_rate,
 )
+from grainlaw.mpm_core.layout import CROWDING, DENSITY, LXY, MEAN_AROUND, SXX, SXY, SYY, SZZ, VX, X, Y
 
 LOOSE = {
     "material": {"mu_i_lc": MU_I_LC},

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, COLUMN, momentum, simulation
 
-from materials import InputError
-from mpm_core.columns import DENSITY, SXX, SXY, SYY, VX, VY, X, Y
-from mpm_core.scene import FEWEST_PERIODIC_CELLS
+from grainlaw.materials import InputError
+from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, VX, VY, X, Y
+from grainlaw.mpm_core.scene.model import FEWEST_PERIODIC_CELLS
 
 G = 9.81
 

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from importlib import import_module
 
-from materials.errors import InputError, nearest_name
-from validation.case import Case
+from grainlaw.materials.errors import InputError, nearest_name
+from grainlaw.validation.case import Case
 
 STANDARD = "standard"
 # From one point to whole scenes.
@@ -74,7 +74,7 @@ def get_case(name: str) -> Case:
     name = name.replace("-", "_")
     if name not in NAMES:
         raise InputError(f"unknown validation case or suite '{name}'; {nearest_name(name, [*NAMES, *SUITES])}")
-    case: Case = import_module(f"validation.cases.{name}").CASE
+    case: Case = import_module(f"grainlaw.validation.cases.{name}").CASE
     return case
 
 

@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import Any
 
-from materials.registry import get_material
-from mpm_core.observables import PileShape, pile_shape
-from mpm_core.simulation import Simulation
-from validation.case import Effort
-from validation.scenes import shipped_simulation
+from grainlaw.materials.registry import get_material
+from grainlaw.mpm_core.output.observables import PileShape, pile_shape
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Effort
+from grainlaw.validation.scenes import shipped_simulation
 
 SCENES = {
     "mu(I)-LC": "collapse_mu_i_lc",

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from materials.rheology import shear_modulus
-from mpm_core.body import Body
-from mpm_core.columns import AXX, AYY, LXX, LYY, SXX, SYY, VX, VY
-from mpm_core.simulation import Simulation
-from validation.scenes import advance, simulation_of
+from grainlaw.materials.rheology import shear_modulus
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.layout import AXX, AYY, LXX, LYY, SXX, SYY, VX, VY
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.scenes import advance, simulation_of
 
 Array = NDArray[np.float64]
 

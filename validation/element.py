@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from materials.element.catalogue import get_element_test
-from materials.element.result import ElementResult
-from materials.element.run import run_element_test
-from materials.element.specimen import prepared
+from grainlaw.materials.element.catalogue import get_element_test
+from grainlaw.materials.element.result import ElementResult
+from grainlaw.materials.element.run import run_element_test
+from grainlaw.materials.element.specimen import prepared
 
 
 def element_history(

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from materials.compilation import pointwise_law
-from materials.registry import get_material
-from mpm_core.output import atomic
-from mpm_core.sources import CORE_MARK
+from grainlaw.materials import atomic
+from grainlaw.materials.compilation import pointwise_law
+from grainlaw.materials.registry import get_material
+from grainlaw.mpm_core.kernels.sources import CORE_MARK
 
 FOLDER = Path("runs/collapse_of_every_law")
 

@@ -5,8 +5,8 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from materials import InputError, SimulationError
-from validation.case import Case, Effort, Evidence, Measurement
+from grainlaw.materials import InputError, SimulationError
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement
 
 NO_EVIDENCE = Evidence(())
 

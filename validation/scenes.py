@@ -4,11 +4,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from materials import InputError
-from mpm_core.body import Body
-from mpm_core.run import next_step
-from mpm_core.scene import Scene
-from mpm_core.simulation import Simulation
+from grainlaw.materials import InputError
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.stepping.run import next_step
 
 SCENES = Path(__file__).resolve().parents[1] / "scenes"
 

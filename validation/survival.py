@@ -1,6 +1,6 @@
 """What a hard case must survive, and what was limited on the way.
 
-The core clips nothing: a run that goes wrong stops. What it bounds (`mpm_core.limited`) is counted at the end of a run.
+The core clips nothing: a run that goes wrong stops. What it bounds (`output.bounded_points`) is counted at its end.
 """
 
 from collections.abc import Mapping
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from materials import SimulationError
-from mpm_core.limited import limited
-from mpm_core.observables import PileShape, pile_shape
-from mpm_core.simulation import Simulation
-from validation.case import Measurement, upper_bound
-from validation.scenes import advance
+from grainlaw.materials import SimulationError
+from grainlaw.mpm_core.output.bounded_points import limited
+from grainlaw.mpm_core.output.observables import PileShape, pile_shape
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Measurement, upper_bound
+from grainlaw.validation.scenes import advance
 
 SURVIVAL = "the run reaches its end with finite values and creates no energy"
 NORM = "share of the time not reached; points not finite; energy created over energy released"

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from materials.element.result import ElementResult
-from validation.cam_clay_solutions import EXAMPLE
-from validation.case import Effort
+from grainlaw.materials.element.result import ElementResult
+from grainlaw.validation.cam_clay_solutions import EXAMPLE
+from grainlaw.validation.case import Effort
 
 STRAIN_RATE = 0.01
 
@@ -32,8 +32,3 @@ def axial_strains(effort: Effort) -> tuple[float, ...]:
 def shear_strain(result: ElementResult) -> Any:
     """eps_s = 2/3 (eps_axial - eps_radial), compression-positive, shape (points,)."""
     return 2.0 / 3.0 * (result.strain[:, 0] - result.strain[:, 1])
-
-
-def volumetric_strain(result: ElementResult) -> Any:
-    """eps_v, compression-positive, shape (points,)."""
-    return result.log_specific_volume[0] - result.log_specific_volume

@@ -1,9 +1,9 @@
 """What a data file of `grainlaw calibrate` may hold: tests with columns and settings, measured quantities."""
 
+from grainlaw.materials.calibration.experiments import EXPERIMENTS, Experiment
+from grainlaw.materials.calibration.quantities import QUANTITIES
+from grainlaw.materials.declarations import Parameter, declared_fields
 from grainlaw.reference.markdown import code, table
-from materials.declarations import Parameter, declared_fields
-from validation.calibration.experiments import EXPERIMENTS, Experiment
-from validation.calibration.quantities import QUANTITIES
 
 
 def experiment_tables() -> str:

@@ -4,7 +4,7 @@ from typing import Any
 
 import typer
 
-from grainlaw.cli import app
+from grainlaw.cli.main import app
 from grainlaw.reference.markdown import code, table
 
 

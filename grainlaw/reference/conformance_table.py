@@ -1,7 +1,7 @@
 """The checks of `grainlaw check`, from the suite itself."""
 
+from grainlaw.materials.conformance.suite import CHECKS
 from grainlaw.reference.markdown import code, table
-from validation.conformance.suite import CHECKS
 
 
 def conformance_table() -> str:

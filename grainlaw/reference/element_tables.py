@@ -1,9 +1,9 @@
 """The element tests and their settings."""
 
+from grainlaw.materials.element.catalogue import ELEMENT_TESTS
+from grainlaw.materials.element.mixed import MixedControl, mixed_test
+from grainlaw.materials.element.settings import ElementTest
 from grainlaw.reference.markdown import code, table
-from materials.element.catalogue import ELEMENT_TESTS
-from materials.element.mixed import MixedControl, mixed_test
-from materials.element.settings import ElementTest
 
 
 def element_test_reference() -> str:

@@ -1,10 +1,10 @@
 """One page for each law that ships with grainlaw: header, curves, parameters, state variables and parameter sets."""
 
+from grainlaw.materials import Law, registry
 from grainlaw.reference.law_curves import curves_section
 from grainlaw.reference.markdown import code, table
-from materials import Law, registry
 
-OWN_PACKAGE = "plugins."
+OWN_PACKAGE = "grainlaw.plugins."
 
 
 def own_laws() -> list[Law]:

@@ -1,8 +1,8 @@
 """Tables of what a run writes: fields of a frame, columns of the history."""
 
+from grainlaw.mpm_core.output.fields import BODY_FIELD, FIELDS
+from grainlaw.mpm_core.output.history import HISTORY_COLUMNS
 from grainlaw.reference.markdown import code, table
-from mpm_core.fields import BODY_FIELD, FIELDS
-from mpm_core.output.history import HISTORY_COLUMNS
 
 
 def field_table() -> str:

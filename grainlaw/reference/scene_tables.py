@@ -11,9 +11,9 @@ from typing import Any, Literal
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from grainlaw.materials.declarations import BASE_UNITS
+from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.reference.markdown import code, table
-from materials.declarations import BASE_UNITS
-from mpm_core.scene import Scene
 
 _FACTOR = rf"(?:{'|'.join(BASE_UNITS)})\d*"
 _UNIT = re.compile(rf"\s*\[({_FACTOR}(?:[./]{_FACTOR})*)\]")

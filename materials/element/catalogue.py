@@ -1,9 +1,9 @@
 """The element tests by name."""
 
-from materials.element.compression import COMPRESSION_TESTS
-from materials.element.settings import ElementTest
-from materials.element.shear import SHEAR_TESTS
-from materials.errors import InputError, nearest_name
+from grainlaw.materials.element.compression import COMPRESSION_TESTS
+from grainlaw.materials.element.settings import ElementTest
+from grainlaw.materials.element.shear import SHEAR_TESTS
+from grainlaw.materials.errors import InputError, nearest_name
 
 ELEMENT_TESTS: dict[str, ElementTest] = {test.name: test for test in (*SHEAR_TESTS, *COMPRESSION_TESTS)}
 

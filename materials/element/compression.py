@@ -1,8 +1,8 @@
 """Compression tests, axis yy: isotropic, oedometer, triaxial (drained and undrained) and biaxial (plane strain)."""
 
-from materials.element.path import LoadingPath, constant_rate
-from materials.element.settings import ElementTest, StrainedSettings
-from materials.tensor import SymmetricTensor, isotropic
+from grainlaw.materials.element.path import LoadingPath, constant_rate
+from grainlaw.materials.element.settings import ElementTest, StrainedSettings
+from grainlaw.materials.tensor import SymmetricTensor, isotropic
 
 AXIAL = SymmetricTensor(0.0, -1.0, 0.0, 0.0, 0.0, 0.0)
 RADIAL = SymmetricTensor(1.0, 0.0, 1.0, 0.0, 0.0, 0.0)

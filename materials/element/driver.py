@@ -15,14 +15,14 @@ import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
-from materials.compilation import PointwiseLaw, explained, mark_of_sources, named, pointwise_law
-from materials.element import search as search_module
-from materials.element.path import LoadingPath
-from materials.element.point import Point
-from materials.element.search import narrowed, search_from
-from materials.element.specimen import Specimen
-from materials.errors import SimulationError
-from materials.tensor import added, contraction, scaled, trace
+from grainlaw.materials.compilation import PointwiseLaw, explained, mark_of_sources, named, pointwise_law
+from grainlaw.materials.element import search as search_module
+from grainlaw.materials.element.path import LoadingPath
+from grainlaw.materials.element.point import Point
+from grainlaw.materials.element.search import narrowed, search_from
+from grainlaw.materials.element.specimen import Specimen
+from grainlaw.materials.errors import SimulationError
+from grainlaw.materials.tensor import added, contraction, scaled, trace
 
 # Relative to the target: 1e-7 Pa at 1000 Pa, still far above the round-off of a law that is stiff in the density.
 CONTROL_TOLERANCE = 1e-10

@@ -14,10 +14,10 @@ from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter, ScalarFo
 from numpy.typing import NDArray
 from PIL import Image
 
-from materials.element.lines import compression_lines, critical_stress_ratio
-from materials.element.result import ElementResult
-from materials.element.shear import ConstantPressureShearSettings
-from materials.tensor import SymmetricTensor
+from grainlaw.materials.element.lines import compression_lines, critical_stress_ratio
+from grainlaw.materials.element.result import ElementResult
+from grainlaw.materials.element.shear import ConstantPressureShearSettings
+from grainlaw.materials.tensor import SymmetricTensor
 
 COLOURS = ("tab:green", "tab:blue", "tab:purple", "tab:orange", "tab:brown", "tab:pink", "tab:olive", "tab:cyan")
 COLOURS_OF_A_PICTURE = 128

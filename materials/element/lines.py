@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from materials.element.result import ElementResult
+from grainlaw.materials.element.result import ElementResult
 
 Array = NDArray[np.float64]
 

@@ -16,10 +16,10 @@ from typing import Annotated, Literal, NamedTuple, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
 
-from materials.element.path import steps_of
-from materials.element.settings import ElementTest, GrainDensity, InitialDensity, InitialPressure
-from materials.errors import InputError, nearest_name
-from materials.tensor import SymmetricTensor
+from grainlaw.materials.element.path import steps_of
+from grainlaw.materials.element.settings import ElementTest, GrainDensity, InitialDensity, InitialPressure
+from grainlaw.materials.errors import InputError, nearest_name
+from grainlaw.materials.tensor import SymmetricTensor
 
 Component = Literal["xx", "yy", "zz", "xy", "yz", "xz"]
 COMPONENTS: tuple[Component, ...] = get_args(Component)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from materials.errors import InputError
-from materials.tensor import SymmetricTensor, isotropic
+from grainlaw.materials.errors import InputError
+from grainlaw.materials.tensor import SymmetricTensor, isotropic
 
 NOTHING = isotropic(0.0)
 MAXIMUM_STEPS = 100_000_000

@@ -2,8 +2,8 @@
 
 from typing import Any, NamedTuple
 
-from materials.element.search import Search, search_from
-from materials.tensor import SymmetricTensor, isotropic
+from grainlaw.materials.element.search import Search, search_from
+from grainlaw.materials.tensor import SymmetricTensor, isotropic
 
 
 class Point(NamedTuple):

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from materials.element.point import Point
-from materials.element.specimen import Specimen
-from materials.tensor import (
+from grainlaw.materials.element.point import Point
+from grainlaw.materials.element.specimen import Specimen
+from grainlaw.materials.tensor import (
     SymmetricTensor,
     deviatoric_stress,
     equivalent_shear_stress,
@@ -84,6 +84,11 @@ class ElementResult:
     def deviatoric_stress(self) -> Array:
         """Deviatoric stress q [Pa], shape (points,)."""
         return np.array([deviatoric_stress(point.stress) for point in self.points])
+
+    @cached_property
+    def volumetric_strain(self) -> Array:
+        """eps_v since the start, compression-positive, from the specific volumes, shape (points,)."""
+        return self.log_specific_volume[0] - self.log_specific_volume
 
     @cached_property
     def shear_strain_rate(self) -> Array:

@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 from typing import Any
 
-from materials.element.path import LoadingPath
-from materials.element.point import Point, point_at_rest
-from materials.element.result import ElementResult
-from materials.element.settings import ElementTest
-from materials.element.specimen import Specimen
-from materials.tensor import isotropic
+from grainlaw.materials.element.path import LoadingPath
+from grainlaw.materials.element.point import Point, point_at_rest
+from grainlaw.materials.element.result import ElementResult
+from grainlaw.materials.element.settings import ElementTest
+from grainlaw.materials.element.specimen import Specimen
+from grainlaw.materials.tensor import isotropic
 
 KEPT_STATES = 3000
 
@@ -41,9 +41,9 @@ def initial_point(specimen: Specimen, settings: Any) -> Point:
 def _followed(specimen: Specimen, path: Any, start: Point, stride: int) -> Iterator[Point]:
     # Imported here, because each path needs only one of the compiler and the root finder.
     if isinstance(path, LoadingPath):
-        from materials.element.driver import follow_path
+        from grainlaw.materials.element.driver import follow_path
 
         return follow_path(specimen, path, start, stride)
-    from materials.element.stages import follow_stages
+    from grainlaw.materials.element.stages import follow_stages
 
     return follow_stages(specimen, path, start, stride)

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-from materials.declarations import Parameter, declared_fields
-from materials.element.path import LoadingPath
+from grainlaw.materials.declarations import Parameter, declared_fields
+from grainlaw.materials.element.path import LoadingPath
 
 if TYPE_CHECKING:
-    from materials.element.mixed import MixedControl
+    from grainlaw.materials.element.mixed import MixedControl
 
 InitialPressure = Annotated[float, Parameter("Pa", "pressure p of the isotropic initial state", "(0, inf)")]
 InitialDensity = Annotated[

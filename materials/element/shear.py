@@ -4,9 +4,9 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from materials.declarations import Parameter
-from materials.element.path import LoadingPath, constant_rate, steps_of
-from materials.element.settings import (
+from grainlaw.materials.declarations import Parameter
+from grainlaw.materials.element.path import LoadingPath, constant_rate, steps_of
+from grainlaw.materials.element.settings import (
     ElementTest,
     GrainDensity,
     GrainDiameter,
@@ -15,8 +15,8 @@ from materials.element.settings import (
     StrainedSettings,
     TimeStep,
 )
-from materials.rheology import inertial_number
-from materials.tensor import SymmetricTensor, isotropic
+from grainlaw.materials.rheology import inertial_number
+from grainlaw.materials.tensor import SymmetricTensor, isotropic
 
 SHEAR = SymmetricTensor(0.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 

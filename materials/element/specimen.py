@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from materials.declarations import checked_parameters
-from materials.element.settings import ElementTest
-from materials.errors import InputError, nearest_name
-from materials.law import Law
-from materials.registry import get_material
+from grainlaw.materials.declarations import checked_parameters
+from grainlaw.materials.element.settings import ElementTest
+from grainlaw.materials.errors import InputError, nearest_name
+from grainlaw.materials.law import Law
+from grainlaw.materials.registry import get_material
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root
 
-from materials.compilation import explained, make_single_step, pointwise_law
-from materials.element.mixed import MixedControl, Stage
-from materials.element.path import steps_of
-from materials.element.point import Point
-from materials.element.specimen import Specimen
-from materials.errors import SimulationError
-from materials.tensor import SymmetricTensor, added, scaled, trace
+from grainlaw.materials.compilation import explained, make_single_step, pointwise_law
+from grainlaw.materials.element.mixed import MixedControl, Stage
+from grainlaw.materials.element.path import steps_of
+from grainlaw.materials.element.point import Point
+from grainlaw.materials.element.specimen import Specimen
+from grainlaw.materials.errors import SimulationError
+from grainlaw.materials.tensor import SymmetricTensor, added, scaled, trace
 
 # Relative to the largest initial or prescribed stress component.
 STRESS_TOLERANCE = 1e-8

@@ -5,10 +5,9 @@ from pathlib import Path
 
 import h5py
 
-from materials import InputError
-from mpm_core.output import atomic
-from mpm_core.reach import reach_between
-from mpm_core.simulation import Ledger, Simulation
+from grainlaw.materials import InputError, atomic
+from grainlaw.mpm_core.grid.active_nodes import reach_between
+from grainlaw.mpm_core.simulation import Ledger, Simulation
 
 CHECKPOINT_NAME = "checkpoint.h5"
 # What of the reach is stored; the rest follows.

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from materials import InputError
-from materials.errors import nearest_name
+from grainlaw.materials import InputError
+from grainlaw.materials.errors import nearest_name
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-from materials import InputError
-from mpm_core.output import atomic
-from mpm_core.output.frame import Frame
-from mpm_core.output.vtu import write_vtu
+from grainlaw.materials import InputError, atomic
+from grainlaw.mpm_core.output.frame import Frame
+from grainlaw.mpm_core.output.vtu import write_vtu
 
 COLLECTION_NAME = "run.pvd"
 

@@ -8,8 +8,7 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from materials import InputError
-from mpm_core.output import atomic
+from grainlaw.materials import InputError, atomic
 
 HISTORY_NAME = "history.csv"
 

@@ -12,9 +12,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from mpm_core.output import atomic
-from mpm_core.output.frame import Field
-from mpm_core.output.point_image import ColorScale
+from grainlaw.materials import atomic
+from grainlaw.mpm_core.output.frame import Field
+from grainlaw.mpm_core.output.point_image import ColorScale
 
 PAPER_WIDTH = 7.2
 """Width of a figure over both columns of a page [inch]."""

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 
-from mpm_core.output.frame import Frame
-from mpm_core.output.history import HISTORY_COLUMNS
-from mpm_core.output.picture_style import (
+from grainlaw.mpm_core.output.frame import Frame
+from grainlaw.mpm_core.output.history import HISTORY_COLUMNS
+from grainlaw.mpm_core.output.picture_style import (
     PAPER_WIDTH,
     color_bar,
     color_scale,
@@ -18,9 +18,9 @@ from mpm_core.output.picture_style import (
     scalar_values,
     time_label,
 )
-from mpm_core.output.point_image import bounding_box, draw_points, point_spacing, view_box
-from mpm_core.output.run_folder import RunFolder
-from mpm_core.output.snapshots import draw_snapshots
+from grainlaw.mpm_core.output.point_image import bounding_box, draw_points, point_spacing, view_box
+from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.output.snapshots import draw_snapshots
 
 _UNITS = {column.name: column.unit for column in HISTORY_COLUMNS}
 _ENERGIES = (

@@ -9,9 +9,9 @@ import io
 from collections.abc import Iterable
 from pathlib import Path
 
-from mpm_core.output import atomic
-from mpm_core.output.frame import Field
-from mpm_core.output.history import HISTORY_COLUMNS, HISTORY_NAME
+from grainlaw.materials import atomic
+from grainlaw.mpm_core.output.frame import Field
+from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, HISTORY_NAME
 
 QUANTITIES_NAME = "quantities.csv"
 POINT_FILES = "points_*.vtu"

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from materials import InputError
-from mpm_core.output.frame import Frame
-from mpm_core.output.frame_series import FrameFile, read_collection
-from mpm_core.output.history import read_history
-from mpm_core.output.quantities import read_field_documentation
-from mpm_core.output.summary import RunSummary, read_summary
-from mpm_core.output.vtu import read_vtu
+from grainlaw.materials import InputError
+from grainlaw.mpm_core.output.frame import Frame
+from grainlaw.mpm_core.output.frame_series import FrameFile, read_collection
+from grainlaw.mpm_core.output.history import read_history
+from grainlaw.mpm_core.output.quantities import read_field_documentation
+from grainlaw.mpm_core.output.summary import RunSummary, read_summary
+from grainlaw.mpm_core.output.vtu import read_vtu
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from materials import InputError
-from mpm_core.output.frame import Frame
-from mpm_core.output.picture_style import (
+from grainlaw.materials import InputError
+from grainlaw.mpm_core.output.frame import Frame
+from grainlaw.mpm_core.output.picture_style import (
     PAPER_WIDTH,
     color_bar,
     color_scale,
@@ -22,8 +22,8 @@ from mpm_core.output.picture_style import (
     scalar_values,
     time_label,
 )
-from mpm_core.output.point_image import ColorScale, bounding_box, draw_points, point_spacing, view_box
-from mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.output.point_image import ColorScale, bounding_box, draw_points, point_spacing, view_box
+from grainlaw.mpm_core.output.run_folder import RunFolder
 
 NORMALIZED_RUNOUTS = (0.1, 0.5, 1.0)
 

@@ -4,8 +4,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, FiniteFloat, NonNegativeInt, ValidationError
 
-from materials import InputError
-from mpm_core.output import atomic
+from grainlaw.materials import InputError, atomic
 
 SUMMARY_NAME = "summary.json"
 
@@ -24,8 +23,8 @@ class FinalState(BaseModel):
 class RunSummary(BaseModel):
     """One run: times in seconds, memory in bytes, `energy_balance_error` relative to the energy that was released.
 
-    `limited` counts what is bounded at the end instead of clipped (`mpm_core.limited`). `material` names the law, or
-    the laws of a scene with several, joined by commas.
+    `limited` counts what is bounded at the end instead of clipped (`output.bounded_points`). `material` names the law,
+    or the laws of a scene with several, joined by commas.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)

@@ -16,8 +16,8 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm_core.output import atomic
-from mpm_core.output.frame import Frame
+from grainlaw.materials import atomic
+from grainlaw.mpm_core.output.frame import Frame
 
 VTKHDF_NAME = "run.vtkhdf"
 _CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")

@@ -10,9 +10,8 @@ from pathlib import Path
 import meshio
 import numpy as np
 
-from materials import InputError
-from mpm_core.output import atomic
-from mpm_core.output.frame import Field, Frame
+from grainlaw.materials import InputError, atomic
+from grainlaw.mpm_core.output.frame import Field, Frame
 
 _POSITION_ARRAY = "Points"
 _END_OF_ARRAY = b"</DataArray>"

@@ -13,7 +13,7 @@ Valid for slow flow at critical state: the law knows neither rate nor dilatancy.
 import math
 from typing import Annotated, Any, NamedTuple
 
-from materials import (
+from grainlaw.materials import (
     Law,
     Parameter,
     ParameterSet,

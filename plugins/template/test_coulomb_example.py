@@ -3,7 +3,7 @@
 import pytest
 
 from coulomb_example import LAW
-from materials import SymmetricTensor, deviatoric_stress, isotropic, pressure
+from grainlaw.materials import SymmetricTensor, deviatoric_stress, isotropic, pressure
 
 PARAMETERS = LAW.parameter_sets["sand"].parameters
 STRESS = isotropic(-1000.0)

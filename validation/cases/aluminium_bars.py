@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm_core.columns import DENSITY, X, Y
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
-from validation.scenes import advance, in_order_of_generation, shipped_simulation
+from grainlaw.mpm_core.layout import DENSITY, X, Y
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.validation.scenes import advance, in_order_of_generation, shipped_simulation
 
 Array = NDArray[np.floating[Any]]
 

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from validation.driven_square import DrivenSquare, Errors
+from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
+from grainlaw.validation.driven_square import DrivenSquare, Errors
 
 BAND, BAND_CELLS = 1e-2, 32
 LEAST_ORDER = 1.8

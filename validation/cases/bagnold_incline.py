@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from mpm_core.columns import VX, Y
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error, upper_bound
-from validation.scenes import advance, shipped_simulation
+from grainlaw.mpm_core.layout import VX, Y
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error, upper_bound
+from grainlaw.validation.scenes import advance, shipped_simulation
 
 BAND = 2e-2
 ANGLE, GRAVITY = math.radians(24.0), 9.81

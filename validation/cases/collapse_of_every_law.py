@@ -5,17 +5,17 @@ from typing import Any
 
 import numpy as np
 
-from materials.registry import get_material
-from mpm_core.body import Body
-from mpm_core.columns import DENSITY
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Measurement, upper_bound
-from validation.collapses import collapse, published_viscous
-from validation.conformance.code import nanoseconds_per_update
-from validation.conformance.subject import Subject
-from validation.law_collapses import Collapse, kept
-from validation.scenes import advance
-from validation.survival import ENERGY_BAND, trial
+from grainlaw.materials.conformance.code import nanoseconds_per_update
+from grainlaw.materials.conformance.subject import Subject
+from grainlaw.materials.registry import get_material
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.layout import DENSITY
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
+from grainlaw.validation.collapses import collapse, published_viscous
+from grainlaw.validation.law_collapses import Collapse, kept
+from grainlaw.validation.scenes import advance
+from grainlaw.validation.survival import ENERGY_BAND, trial
 
 KINETIC_BAND = 1e-6
 CELL_SIZE = {Effort.QUICK: 0.025, Effort.FULL: 0.00625}

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from materials.registry import get_material
-from mpm_core.body import Body
-from mpm_core.columns import VX, Y
-from mpm_core.contact import Contact
-from mpm_core.scene import Scene
-from mpm_core.simulation import Simulation
-from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, scaled_error
-from validation.scenes import advance
+from grainlaw.materials.registry import get_material
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.kernels.wall_clearance import Contact
+from grainlaw.mpm_core.layout import VX, Y
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, scaled_error
+from grainlaw.validation.scenes import advance
 
 BAND = 0.05
 CELLS = {Effort.QUICK: (0.05, 0.025), Effort.FULL: (0.05, 0.025, 0.0125)}

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from materials.rheology import longitudinal_wave_speed, shear_modulus
-from mpm_core.columns import VX, X
-from mpm_core.simulation import Simulation
-from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
-from validation.scenes import advance, in_order_of_generation, simulation_of
+from grainlaw.materials.rheology import longitudinal_wave_speed, shear_modulus
+from grainlaw.mpm_core.layout import VX, X
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.validation.scenes import advance, in_order_of_generation, simulation_of
 
 BAND = 5e-3
 LENGTH, DENSITY, BULK_MODULUS, POISSON_RATIO = 1.0, 1000.0, 1e5, 0.3

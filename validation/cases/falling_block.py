@@ -3,11 +3,11 @@
 import math
 from typing import Any
 
-from materials.registry import get_material
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Measurement, relative_error
-from validation.scenes import advance, simulation_of
-from validation.survival import NORM, RECKLESSNESS, SURVIVAL, notes, reckless_trial, survival, survivals, trial
+from grainlaw.materials.registry import get_material
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement, relative_error
+from grainlaw.validation.scenes import advance, simulation_of
+from grainlaw.validation.survival import NORM, RECKLESSNESS, SURVIVAL, notes, reckless_trial, survival, survivals, trial
 
 BAND = 1e-3
 DROP, SIZE, GRAVITY = 1.0, 0.2, 9.81

@@ -1,9 +1,19 @@
 """Floors without friction and with more than any material has."""
 
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Measurement, relative_error
-from validation.collapses import CELL_SIZE, collapse
-from validation.survival import NORM, RECKLESSNESS, SURVIVAL, Trial, notes, reckless_trial, survival, survivals, trial
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement, relative_error
+from grainlaw.validation.collapses import CELL_SIZE, collapse
+from grainlaw.validation.survival import (
+    NORM,
+    RECKLESSNESS,
+    SURVIVAL,
+    Trial,
+    notes,
+    reckless_trial,
+    survival,
+    survivals,
+    trial,
+)
 
 END = {Effort.QUICK: 0.6, Effort.FULL: 1.5}
 VALUES = (0.0, 0.7, 10.0)

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from materials import SimulationError
-from materials.rheology import shear_modulus
-from mpm_core.body import Body
-from mpm_core.columns import AFFINE, GRADIENT, VX, VY, X, Y, allocate
-from mpm_core.held_nodes import nodes_where
-from mpm_core.simulation import Simulation
-from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from validation.scenes import advance, simulation_of
+from grainlaw.materials import SimulationError
+from grainlaw.materials.rheology import shear_modulus
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.kernels.held_nodes import nodes_where
+from grainlaw.mpm_core.layout import AFFINE, GRADIENT, VX, VY, X, Y, allocate
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
+from grainlaw.validation.scenes import advance, simulation_of
 
 Array = NDArray[np.float64]
 

@@ -2,10 +2,20 @@
 
 from itertools import pairwise
 
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Measurement, upper_bound
-from validation.collapses import CELL_SIZE, collapse
-from validation.survival import NORM, RECKLESSNESS, SURVIVAL, Trial, notes, reckless_trial, survival, survivals, trial
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
+from grainlaw.validation.collapses import CELL_SIZE, collapse
+from grainlaw.validation.survival import (
+    NORM,
+    RECKLESSNESS,
+    SURVIVAL,
+    Trial,
+    notes,
+    reckless_trial,
+    survival,
+    survivals,
+    trial,
+)
 
 END = {Effort.QUICK: 0.6, Effort.FULL: 1.5}
 VALUES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)

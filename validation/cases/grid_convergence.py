@@ -2,9 +2,9 @@
 
 from itertools import pairwise
 
-from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
-from validation.collapses import SCENES, Pile, collapse, pile
-from validation.scenes import advance
+from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.validation.collapses import SCENES, Pile, collapse, pile
+from grainlaw.validation.scenes import advance
 
 BAND = 3e-2
 END = 1.5

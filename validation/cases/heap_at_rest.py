@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from materials.registry import get_material
-from mpm_core.columns import DENSITY, SYY, Y
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error, upper_bound
-from validation.scenes import advance, shipped_simulation
+from grainlaw.materials.registry import get_material
+from grainlaw.mpm_core.layout import DENSITY, SYY, Y
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error, upper_bound
+from grainlaw.validation.scenes import advance, shipped_simulation
 
 SETTLEMENT_BAND, STRESS_BAND = 1e-3, 1e-2
 CELL = {Effort.QUICK: 0.025, Effort.FULL: 0.0125}

@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from materials import InputError, SimulationError
-from materials.registry import get_material
-from mpm_core.columns import X, Y
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Measurement, upper_bound
-from validation.scenes import advance, simulation_of
+from grainlaw.materials import InputError, SimulationError
+from grainlaw.materials.registry import get_material
+from grainlaw.mpm_core.layout import X, Y
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
+from grainlaw.validation.scenes import advance, simulation_of
 
 SPEED, END = 5.0, 0.3
 CELL = {Effort.QUICK: 0.05, Effort.FULL: 0.025}

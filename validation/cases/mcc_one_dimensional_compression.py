@@ -2,11 +2,11 @@
 
 import math
 
-from materials.element.result import ElementResult
-from validation.cam_clay_solutions import EXAMPLE
-from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
-from validation.element import element_history
-from validation.triaxial import axial_strains, example_values
+from grainlaw.materials.element.result import ElementResult
+from grainlaw.validation.cam_clay_solutions import EXAMPLE
+from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.validation.element import element_history
+from grainlaw.validation.triaxial import axial_strains, example_values
 
 BAND = 1e-4
 FINAL_STRAIN = 0.64

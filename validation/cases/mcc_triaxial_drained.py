@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from materials.element.result import ElementResult
-from validation.cam_clay_solutions import EXAMPLE
-from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
-from validation.element import element_history
-from validation.triaxial import axial_strains, example_values, shear_strain, volumetric_strain
+from grainlaw.materials.element.result import ElementResult
+from grainlaw.validation.cam_clay_solutions import EXAMPLE
+from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.validation.element import element_history
+from grainlaw.validation.triaxial import axial_strains, example_values, shear_strain
 
 BAND = 1e-4
 SHEAR_STRAIN = 0.1
@@ -16,7 +16,7 @@ def state_at(result: ElementResult, strain: float) -> tuple[float, float]:
     """Q [Pa] and eps_v at a shear strain between two kept states."""
     strains = shear_strain(result)
     q = float(np.interp(strain, strains, result.deviatoric_stress))
-    return q, float(np.interp(strain, strains, volumetric_strain(result)))
+    return q, float(np.interp(strain, strains, result.volumetric_strain))
 
 
 def measurements(assignments: dict[str, float]) -> tuple[Measurement, ...]:

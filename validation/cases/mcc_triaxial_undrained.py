@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from validation.cam_clay_solutions import EXAMPLE
-from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
-from validation.element import element_history
-from validation.triaxial import axial_strains, example_values, shear_strain
+from grainlaw.validation.cam_clay_solutions import EXAMPLE
+from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.validation.element import element_history
+from grainlaw.validation.triaxial import axial_strains, example_values, shear_strain
 
 BAND = 1e-4
 SHEAR_STRAIN = 0.02

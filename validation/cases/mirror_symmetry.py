@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from mpm_core.columns import X, Y
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from validation.collapses import CELL_SIZE, SCENES, collapse
-from validation.scenes import advance, in_order_of_generation
+from grainlaw.mpm_core.layout import X, Y
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
+from grainlaw.validation.collapses import CELL_SIZE, SCENES, collapse
+from grainlaw.validation.scenes import advance, in_order_of_generation
 
 BAND = 1e-9
 AXIS, SIZE, COLUMN = 1.6, 0.9, (0.3, 0.9)

@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from mpm_core.columns import X
-from validation.case import Case, Effort, Evidence, Measurement, relative_error
-from validation.collapses import CELL_SIZE, SCENES, Pile, collapse, pile
-from validation.scenes import advance
+from grainlaw.mpm_core.layout import X
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement, relative_error
+from grainlaw.validation.collapses import CELL_SIZE, SCENES, Pile, collapse, pile
+from grainlaw.validation.scenes import advance
 
 BAND = 1e-2
 END = 1.5

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from materials.element.catalogue import ELEMENT_TESTS
-from materials.element.result import ElementResult
-from validation.case import Case, Effort, Evidence, Measurement, upper_bound
-from validation.element import element_history
+from grainlaw.materials.element.catalogue import ELEMENT_TESTS
+from grainlaw.materials.element.result import ElementResult
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
+from grainlaw.validation.element import element_history
 
 BAND = 1e-8
 WITHOUT_INERTIA = {"friction_inertial_number": 1e15, "dilation_inertial_number": 1e15}

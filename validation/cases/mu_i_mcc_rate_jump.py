@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from materials.element.result import ElementResult
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error, upper_bound
-from validation.element import element_history
+from grainlaw.materials.element.result import ElementResult
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error, upper_bound
+from grainlaw.validation.element import element_history
 
 BAND, TRANSIENT_BAND = 1e-6, 0.5
 SLOW, FAST = 0.01, 0.1

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from materials.compilation import named, pointwise_law
-from materials.registry import get_material
-from materials.rheology import shear_modulus
-from materials.tensor import SymmetricTensor
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from validation.random_increments import norm, random_cases
+from grainlaw.materials.compilation import named, pointwise_law
+from grainlaw.materials.registry import get_material
+from grainlaw.materials.rheology import shear_modulus
+from grainlaw.materials.tensor import SymmetricTensor
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
+from grainlaw.validation.random_increments import norm, random_cases
 
 BAND = 1e-8
 # Below this strain no increment is taken in parts, and I is that of the whole increment.

@@ -2,10 +2,10 @@
 
 import math
 
-from materials.element.result import ElementResult
-from materials.rheology import inertial_number
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error
-from validation.element import element_history
+from grainlaw.materials.element.result import ElementResult
+from grainlaw.materials.rheology import inertial_number
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error
+from grainlaw.validation.element import element_history
 
 BAND = 1e-6
 NUMBERS = {Effort.QUICK: (1e-5, 1e-2, 1.0), Effort.FULL: (1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.3, 1.0)}

@@ -3,10 +3,10 @@
 import math
 from typing import Any
 
-from materials.law import Law
-from materials.registry import get_material
-from materials.tensor import SymmetricTensor, isotropic, pressure
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.materials.law import Law
+from grainlaw.materials.registry import get_material
+from grainlaw.materials.tensor import SymmetricTensor, isotropic, pressure
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
 
 BAND = 1e-9
 PRESSURE, DENSITY = 1000.0, 1500.0

@@ -1,9 +1,9 @@
 """Columns of Modified Cam Clay, from normally consolidated to OCR 100."""
 
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Measurement
-from validation.collapses import CELL_SIZE, collapse
-from validation.survival import NORM, RECKLESSNESS, SURVIVAL, notes, reckless_trial, survival, survivals, trial
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement
+from grainlaw.validation.collapses import CELL_SIZE, collapse
+from grainlaw.validation.survival import NORM, RECKLESSNESS, SURVIVAL, notes, reckless_trial, survival, survivals, trial
 
 END = {Effort.QUICK: 0.6, Effort.FULL: 1.5}
 VALUES = (1.0, 4.0, 20.0, 100.0)

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from mpm_core.columns import VX, Y
-from validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from validation.scenes import advance, simulation_of
+from grainlaw.mpm_core.layout import VX, Y
+from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
+from grainlaw.validation.scenes import advance, simulation_of
 
 BAND = 2e-2
 HEIGHT, DENSITY, VISCOSITY, BULK_MODULUS, PRESSURE = 1.0, 1000.0, 100.0, 1e5, 1e4

@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Measurement
-from validation.collapses import CELL_SIZE, collapse, published_viscous
-from validation.survival import NORM, RECKLESSNESS, SURVIVAL, notes, reckless_trial, survival, survivals, trial
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement
+from grainlaw.validation.collapses import CELL_SIZE, collapse, published_viscous
+from grainlaw.validation.survival import NORM, RECKLESSNESS, SURVIVAL, notes, reckless_trial, survival, survivals, trial
 
 END = {Effort.QUICK: 0.6, Effort.FULL: 1.5}
 VALUES = (0.0, 1e-6, 1e-4, 1e-2, 1.0)

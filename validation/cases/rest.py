@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from validation.collapses import CELL_SIZE, SCENES, Pile, collapse, pile, published_viscous
-from validation.scenes import advance
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
+from grainlaw.validation.collapses import CELL_SIZE, SCENES, Pile, collapse, pile, published_viscous
+from grainlaw.validation.scenes import advance
 
 KINETIC_BAND, CREEP_BAND = 1e-6, 1e-3
 REST, WATCH = 1.5, 0.5

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from materials import cam_clay
-from materials.compilation import named, pointwise_law, registered
-from materials.registry import get_material
-from materials.tensor import SymmetricTensor
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from validation.random_increments import norm, random_cases, stress_norm
+from grainlaw.materials.compilation import named, pointwise_law, registered
+from grainlaw.materials.registry import get_material
+from grainlaw.materials.tensor import SymmetricTensor
+from grainlaw.plugins.cam_clay import return_map as cam_clay
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
+from grainlaw.validation.random_increments import norm, random_cases, stress_norm
 
 YIELD_BAND, ITERATIONS_BAND, SMALL_INCREMENT_BAND = 1e-10, 6.0, 1e-2
 COUNT = {Effort.QUICK: 100_000, Effort.FULL: 1_000_000}

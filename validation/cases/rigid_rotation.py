@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from mpm_core.body import Body
-from mpm_core.columns import AFFINE, GRADIENT, LXY, LYX, SXX, SXY, SYY, SZZ, VX, VY, X, Y
-from validation.case import Case, Convergence, Effort, Evidence, Measurement, scaled_error
-from validation.scenes import simulation_of
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.layout import AFFINE, GRADIENT, LXY, LYX, SXX, SXY, SYY, SZZ, VX, VY, X, Y
+from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Measurement, scaled_error
+from grainlaw.validation.scenes import simulation_of
 
 BAND = 1e-3
 TURNS = 10

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from materials.rheology import own_inertial_number_constant
-from mpm_core.columns import X
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error, upper_bound
-from validation.scenes import advance, simulation_of
+from grainlaw.mpm_core.layout import X
+from grainlaw.plugins.mu_i.friction import own_inertial_number_constant
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error, upper_bound
+from grainlaw.validation.scenes import advance, simulation_of
 
 ASPECT_RATIOS = {Effort.QUICK: (0.5, 2.0, 8.0), Effort.FULL: (0.5, 1.0, 2.0, 4.0, 8.0, 16.0)}
 CELLS_OF_WIDTH = {Effort.QUICK: 8, Effort.FULL: 16}

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from mpm_core.columns import SYY, Y
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from validation.scenes import advance, in_order_of_generation, simulation_of
+from grainlaw.mpm_core.layout import SYY, Y
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
+from grainlaw.validation.scenes import advance, in_order_of_generation, simulation_of
 
 BAND, SETTLEMENT_BAND = 5e-3, 1e-3
 HEIGHT, DENSITY, GRAVITY = 1.0, 1500.0, 9.81

@@ -2,11 +2,12 @@
 
 import math
 
-from materials.element.result import ElementResult
-from materials.rheology import friction_of_inertial_number, inertial_number
-from materials.tensor import equivalent_shear_stress
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error
-from validation.element import element_history
+from grainlaw.materials.element.result import ElementResult
+from grainlaw.materials.rheology import inertial_number
+from grainlaw.materials.tensor import equivalent_shear_stress
+from grainlaw.plugins.mu_i.friction import friction_of_inertial_number
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error
+from grainlaw.validation.element import element_history
 
 BAND = 1e-12
 # Far beyond the elastic strain of 1e-3.

@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mpm_core.columns import DENSITY, X
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from validation.collapses import collapse
-from validation.scenes import advance
+from grainlaw.mpm_core.layout import DENSITY, X
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
+from grainlaw.validation.collapses import collapse
+from grainlaw.validation.scenes import advance
 
 Array = NDArray[np.floating[Any]]
 START = 1.2

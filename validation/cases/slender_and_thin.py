@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from materials.registry import get_material
-from mpm_core.columns import Y
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Measurement, upper_bound
-from validation.scenes import advance, simulation_of
-from validation.survival import NORM, RECKLESSNESS, SURVIVAL, notes, reckless_trial, survival, survivals, trial
+from grainlaw.materials.registry import get_material
+from grainlaw.mpm_core.layout import Y
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
+from grainlaw.validation.scenes import advance, simulation_of
+from grainlaw.validation.survival import NORM, RECKLESSNESS, SURVIVAL, notes, reckless_trial, survival, survivals, trial
 
 SETTLEMENT_BAND = 1e-2
 END = {Effort.QUICK: 0.5, Effort.FULL: 1.5}

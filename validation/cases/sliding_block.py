@@ -3,10 +3,10 @@
 import math
 from typing import Any
 
-from mpm_core.columns import SXY, SYY, X
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
-from validation.scenes import advance, shipped_simulation
+from grainlaw.mpm_core.layout import SXY, SYY, X
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.validation.scenes import advance, shipped_simulation
 
 BAND = 5e-3
 ANGLE, FRICTION, GRAVITY = math.radians(30.0), 0.3, 9.81

@@ -3,15 +3,15 @@
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from mpm_core.scene import Scene
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from validation.collapses import SCENES
-from validation.scenes import SCENES as FOLDER_OF_SCENES
-from validation.speed_error.exact import cost_and_error, exact_settings
-from validation.speed_error.front import error, mean_observables, pareto_front
-from validation.speed_error.setting import COLUMNS, Outcome, Setting
-from validation.speed_error.store import made_with_other_kernels, outcomes
-from validation.speed_error.sweep import references, settings
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
+from grainlaw.validation.collapses import SCENES
+from grainlaw.validation.scenes import SCENES as FOLDER_OF_SCENES
+from grainlaw.validation.speed_error.exact import cost_and_error, exact_settings
+from grainlaw.validation.speed_error.front import error, mean_observables, pareto_front
+from grainlaw.validation.speed_error.setting import COLUMNS, Outcome, Setting
+from grainlaw.validation.speed_error.store import made_with_other_kernels, outcomes
+from grainlaw.validation.speed_error.sweep import references, settings
 
 # Outcomes stay here: a sweep that was stopped goes on, and the report says how many were made with other kernels.
 FOLDER = Path("runs/speed_error")

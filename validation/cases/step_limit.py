@@ -4,14 +4,14 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from materials import InputError
-from mpm_core.run import run
-from mpm_core.scene import Scene
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Measurement, upper_bound
-from validation.collapses import CELL_SIZE, SCENES, collapse
-from validation.scenes import shipped_simulation, simulation_of
-from validation.survival import NORM, SURVIVAL, notes, reckless_trial, survival, survivals, trial
+from grainlaw.materials import InputError
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.stepping.run import run
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
+from grainlaw.validation.collapses import CELL_SIZE, SCENES, collapse
+from grainlaw.validation.scenes import shipped_simulation, simulation_of
+from grainlaw.validation.survival import NORM, SURVIVAL, notes, reckless_trial, survival, survivals, trial
 
 END = {Effort.QUICK: 0.5, Effort.FULL: 1.5}
 DISCS_END = 3.6

@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from materials.registry import get_material
-from mpm_core.columns import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Measurement, relative_error, upper_bound
-from validation.scenes import advance, simulation_of
-from validation.survival import NORM, SURVIVAL, notes, survivals, trial
+from grainlaw.materials.registry import get_material
+from grainlaw.mpm_core.layout import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement, relative_error, upper_bound
+from grainlaw.validation.scenes import advance, simulation_of
+from grainlaw.validation.survival import NORM, SURVIVAL, notes, survivals, trial
 
 STRESS_BAND, DENSITY_BAND, MOMENTUM_BAND = 1e-9, 1e-2, 1e-12
 CENTER, RADIUS, DENSITY_AT_START = np.array([[0.5], [0.5]]), 0.15, 1500.0

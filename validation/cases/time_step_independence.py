@@ -1,8 +1,8 @@
 """The final pile of the paper's collapse does not depend on the time step."""
 
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
-from validation.collapses import CELL_SIZE, SCENES, Pile, collapse, pile
-from validation.scenes import advance
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.validation.collapses import CELL_SIZE, SCENES, Pile, collapse, pile
+from grainlaw.validation.scenes import advance
 
 BAND = 2e-2
 END = 1.5

@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from mpm_core.columns import SXX, SXY, SYY, X, Y
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Measurement, upper_bound
-from validation.collapses import CELL_SIZE, SCENES, collapse
-from validation.scenes import advance, in_order_of_generation
+from grainlaw.mpm_core.layout import SXX, SXY, SYY, X, Y
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
+from grainlaw.validation.collapses import CELL_SIZE, SCENES, collapse
+from grainlaw.validation.scenes import advance, in_order_of_generation
 
 # Sums over a stencil run along x first; turned, they have another order and another round-off.
 BAND = 1e-9

@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from materials.rheology import shear_modulus
-from mpm_core.body import Body
-from mpm_core.columns import DENSITY, SXX, SXY, SYY, SZZ
-from mpm_core.simulation import Simulation
-from validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error, upper_bound
-from validation.scenes import advance, shipped_simulation
+from grainlaw.materials.rheology import shear_modulus
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, SZZ
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error, upper_bound
+from grainlaw.validation.scenes import advance, shipped_simulation
 
 MOMENTUM_BAND, ENERGY_BAND = 1e-12, 1e-2
 END = 3.6

@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from materials.errors import InputError, SimulationError, nearest_name
-from validation.dem.catalogue import CASES
-from validation.dem.description import AnyCase
-from validation.dem.runs import Run, finished, perform
+from grainlaw.materials.errors import InputError, SimulationError, nearest_name
+from grainlaw.validation.dem.catalogue import CASES
+from grainlaw.validation.dem.description import AnyCase
+from grainlaw.validation.dem.runs import Run, finished, perform
 
 
 @dataclass(frozen=True)

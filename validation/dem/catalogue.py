@@ -1,6 +1,6 @@
 """The cases that the reference set is made of, in the order of their worth."""
 
-from validation.dem.description import (
+from grainlaw.validation.dem.description import (
     AnyCase,
     Collapse,
     Compression,

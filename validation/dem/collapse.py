@@ -4,9 +4,9 @@ from functools import cache
 
 import numpy as np
 
-from validation.dem.description import Collapse
-from validation.dem.liggghts import SETTLING_FRICTION, contact_values, data_file, decks, template_texts
-from validation.dem.packing import (
+from grainlaw.validation.dem.description import Collapse
+from grainlaw.validation.dem.liggghts import SETTLING_FRICTION, contact_values, data_file, decks, template_texts
+from grainlaw.validation.dem.packing import (
     GLUED_DEPTH,
     Array,
     Packing,

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from materials.errors import SimulationError
-from mpm_core.output.atomic import write_text
-from validation.dem.cell import Reduced
-from validation.dem.description import Compression
-from validation.dem.liggghts import contact_values, data_file, decks, template_texts
-from validation.dem.packing import loose, mean_volume, random_radii
+from grainlaw.materials.atomic import write_text
+from grainlaw.materials.errors import SimulationError
+from grainlaw.validation.dem.cell import Reduced
+from grainlaw.validation.dem.description import Compression
+from grainlaw.validation.dem.liggghts import contact_values, data_file, decks, template_texts
+from grainlaw.validation.dem.packing import loose, mean_volume, random_radii
 
 Files = dict[str, str]
 TABLE = "compression.csv"

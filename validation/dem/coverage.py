@@ -3,9 +3,9 @@
 import json
 from pathlib import Path
 
-from validation.dem.description import AnyCase
-from validation.dem.reduction import COLLAPSES, PROVENANCE
-from validation.dem.runs import Run, runs_of
+from grainlaw.validation.dem.description import AnyCase
+from grainlaw.validation.dem.reduction import COLLAPSES, PROVENANCE
+from grainlaw.validation.dem.runs import Run, runs_of
 
 
 def present_runs(reference: Path) -> set[str]:

@@ -5,8 +5,8 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from validation.dem.description import Contact
-from validation.dem.packing import Array, Packing
+from grainlaw.validation.dem.description import Contact
+from grainlaw.validation.dem.packing import Array, Packing
 
 GRAIN, GLUED, PLANE, SMOOTH = 1, 2, 3, 4
 
@@ -18,7 +18,7 @@ SETTLING_FRICTION = 0.1
 def decks() -> Environment:
     """The deck templates that the package ships."""
     return Environment(
-        loader=PackageLoader("validation.dem", "decks"),
+        loader=PackageLoader("grainlaw.validation.dem", "decks"),
         undefined=StrictUndefined,
         autoescape=False,
         trim_blocks=True,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.dem.description import Grains
+from grainlaw.validation.dem.description import Grains
 
 Array = NDArray[np.float64]
 

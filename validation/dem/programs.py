@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from materials.errors import InputError, SimulationError
+from grainlaw.materials.errors import InputError, SimulationError
 
 POLL_INTERVAL = 0.5
 

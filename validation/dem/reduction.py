@@ -7,11 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from materials import InputError
-from mpm_core.output.atomic import write_text
-from validation.dem.runs import RECORD
-from validation.grains.observation import Observation, write_observation
-from validation.grains.observe import observe_folder
+from grainlaw.materials import InputError
+from grainlaw.materials.atomic import write_text
+from grainlaw.validation.dem.runs import RECORD
+from grainlaw.validation.grains.observation import Observation, write_observation
+from grainlaw.validation.grains.observe import observe_folder
 
 COLLAPSES, PROVENANCE = "collapse", "provenance.json"
 # Rows kept of a compression test: enough to fit slopes to, and a small file.

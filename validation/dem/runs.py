@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from materials.errors import InputError, SimulationError
-from mpm_core.output.atomic import write_text
-from validation.dem import collapse, compression, shear, shear_start
-from validation.dem.description import AnyCase, Collapse, Compression, PlaneShear, ShearStart
-from validation.dem.packing import Packing, cut
-from validation.dem.programs import LIGGGHTS, PROGRAMS, YADE, Cost, installed_version, run_program
+from grainlaw.materials.atomic import write_text
+from grainlaw.materials.errors import InputError, SimulationError
+from grainlaw.validation.dem import collapse, compression, shear, shear_start
+from grainlaw.validation.dem.description import AnyCase, Collapse, Compression, PlaneShear, ShearStart
+from grainlaw.validation.dem.packing import Packing, cut
+from grainlaw.validation.dem.programs import LIGGGHTS, PROGRAMS, YADE, Cost, installed_version, run_program
 
 Files = dict[str, str]
 Report = Callable[[str], None]

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from mpm_core.output.atomic import write_text
-from validation.dem.cell import Reduced
-from validation.dem.description import PlaneShear, ShearCell, ShearStage
-from validation.dem.liggghts import contact_values, data_file, decks, template_texts
-from validation.dem.packing import Array, Packing, loose, mean_volume, random_radii
+from grainlaw.materials.atomic import write_text
+from grainlaw.validation.dem.cell import Reduced
+from grainlaw.validation.dem.description import PlaneShear, ShearCell, ShearStage
+from grainlaw.validation.dem.liggghts import contact_values, data_file, decks, template_texts
+from grainlaw.validation.dem.packing import Array, Packing, loose, mean_volume, random_radii
 
 Files = dict[str, str]
 TABLE = "shear.csv"

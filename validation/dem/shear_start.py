@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from mpm_core.output.atomic import write_text
-from validation.dem.cell import Reduced
-from validation.dem.description import ShearStart
-from validation.dem.liggghts import SETTLING_FRICTION, contact_values, decks, template_texts
-from validation.dem.shear import bulk, cell, rate, read_profiles
+from grainlaw.materials.atomic import write_text
+from grainlaw.validation.dem.cell import Reduced
+from grainlaw.validation.dem.description import ShearStart
+from grainlaw.validation.dem.liggghts import SETTLING_FRICTION, contact_values, decks, template_texts
+from grainlaw.validation.dem.shear import bulk, cell, rate, read_profiles
 
 Files = dict[str, str]
 TABLE = "shear_start.csv"

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.dem.collapse import ROLLING_STIFFNESS
-from validation.dem.description import Contact
-from validation.dem.liggghts import contact_values, data_file, decks
-from validation.dem.packing import Packing
-from validation.dem.programs import LIGGGHTS, PROGRAMS, run_program
+from grainlaw.validation.dem.collapse import ROLLING_STIFFNESS
+from grainlaw.validation.dem.description import Contact
+from grainlaw.validation.dem.liggghts import contact_values, data_file, decks
+from grainlaw.validation.dem.packing import Packing
+from grainlaw.validation.dem.programs import LIGGGHTS, PROGRAMS, run_program
 
 RADIUS, DENSITY, GRAVITY, TIME_STEP = 0.0075, 2450.0, 9.81, 1e-5
 SPEED, APPROACH = 0.3, 0.2

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from mpm_core.scene import Scene
-from mpm_core.simulation import Simulation
-from validation.dem_report.reference_set import Ensemble
-from validation.grains.material_points import DEPTH, mirrored, snapshot_of_bodies
-from validation.grains.observation import Observation
-from validation.grains.observe import Setting, observe
-from validation.scenes import advance
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.validation.dem_report.reference_set import Ensemble
+from grainlaw.validation.grains.material_points import DEPTH, mirrored, snapshot_of_bodies
+from grainlaw.validation.grains.observation import Observation
+from grainlaw.validation.grains.observe import Setting, observe
+from grainlaw.validation.scenes import advance
 
 FLOOR_FRICTION = 0.7
 # The surface next to the sides is rounded by the kernel.

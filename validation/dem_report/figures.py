@@ -6,12 +6,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from validation.dem_report.fitting_data import friction_of_mean_pressure
-from validation.dem_report.judgement import Judgement
-from validation.dem_report.reference_set import Ensemble, Rows
-from validation.grains.distance import surface_at
-from validation.grains.observation import Observation
-from validation.report.plots import data_uri
+from grainlaw.validation.dem_report.fitting_data import friction_of_mean_pressure
+from grainlaw.validation.dem_report.judgement import Judgement
+from grainlaw.validation.dem_report.reference_set import Ensemble, Rows
+from grainlaw.validation.grains.distance import surface_at
+from grainlaw.validation.grains.observation import Observation
+from grainlaw.validation.report.plots import data_uri
 
 COLORS = ("#d95f02", "#1b9e77", "#7570b3", "#e7298a", "#66a61e", "#e6ab02", "#a6761d", "#1f78b4", "#b2182b")
 BAND, MEAN = "#cccccc", "#555555"

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.calibration.findings import Estimate, Findings
-from validation.calibration.fit import Fit, calibrate
-from validation.calibration.model import answer
+from grainlaw.materials.calibration.findings import Estimate, Findings
+from grainlaw.materials.calibration.fit import Fit, calibrate
+from grainlaw.materials.calibration.model import answer
 
 CURVE_POINTS = 12
 

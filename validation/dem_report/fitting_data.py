@@ -8,9 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from materials import InputError
-from mpm_core.output import atomic
-from validation.dem_report.reference_set import ReferenceSet, Rows
+from grainlaw.materials import InputError, atomic
+from grainlaw.validation.dem_report.reference_set import ReferenceSet, Rows
 
 SHEAR_FILE, SLOW_SHEAR_FILE, COMPRESSION_FILE = "shear.csv", "slow_shear.csv", "compression.csv"
 # Steady shear with its solid fraction; the same, said to start at the critical state of a Cam Clay; its start.

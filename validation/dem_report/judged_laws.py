@@ -1,7 +1,7 @@
 """The laws that are judged, one entry each; a law of a plugin joins by an entry of its own."""
 
-from validation.dem_report.fitted_laws import JudgedLaw
-from validation.dem_report.fitting_data import (
+from grainlaw.validation.dem_report.fitted_laws import JudgedLaw
+from grainlaw.validation.dem_report.fitting_data import (
     COMPRESSION_FILE,
     CRITICAL_FLOW_FILE,
     FLOW_FILE,

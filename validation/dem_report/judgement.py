@@ -7,15 +7,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from materials import InputError, SimulationError, get_material
-from materials.compilation import pointwise_law
-from mpm_core.sources import CORE_MARK
-from validation.dem_report.column import Column, column_of, column_scene, observed_column
-from validation.dem_report.fitted_laws import FittedLaw
-from validation.dem_report.reference_set import Ensemble, ReferenceSet
-from validation.dem_report.variants import Variant, varied
-from validation.grains.distance import Comparison, Verdict, compare
-from validation.grains.observation import Observation, is_observation, read_observation, write_observation
+from grainlaw.materials import InputError, SimulationError, get_material
+from grainlaw.materials.compilation import pointwise_law
+from grainlaw.mpm_core.kernels.sources import CORE_MARK
+from grainlaw.validation.dem_report.column import Column, column_of, column_scene, observed_column
+from grainlaw.validation.dem_report.fitted_laws import FittedLaw
+from grainlaw.validation.dem_report.reference_set import Ensemble, ReferenceSet
+from grainlaw.validation.dem_report.variants import Variant, varied
+from grainlaw.validation.grains.distance import Comparison, Verdict, compare
+from grainlaw.validation.grains.observation import Observation, is_observation, read_observation, write_observation
 
 RUNS = "runs"
 Announce = Callable[[str], None]

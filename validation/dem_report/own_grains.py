@@ -5,16 +5,16 @@ from pathlib import Path
 
 import numpy as np
 
-from mpm_core.output import atomic
-from validation.dem_report.judgement import Judgement
-from validation.dem_report.reference_set import Ensemble
-from validation.dem_report.sections import Section, column_figures
-from validation.dem_report.stored import SECTIONS, sections_as_json
-from validation.dem_report.tables import comparison_table, profile_table
-from validation.dem_report.write import rendered
-from validation.grains.distance import compare
-from validation.grains.reference_file import load_reference
-from validation.grains.run_observation import observe_run
+from grainlaw.materials import atomic
+from grainlaw.validation.dem_report.judgement import Judgement
+from grainlaw.validation.dem_report.reference_set import Ensemble
+from grainlaw.validation.dem_report.sections import Section, column_figures
+from grainlaw.validation.dem_report.stored import SECTIONS, sections_as_json
+from grainlaw.validation.dem_report.tables import comparison_table, profile_table
+from grainlaw.validation.dem_report.write import rendered
+from grainlaw.validation.grains.distance import compare
+from grainlaw.validation.grains.reference_file import load_reference
+from grainlaw.validation.grains.run_observation import observe_run
 
 PAGE, TITLE = "comparison.html", "Runs against grains"
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from materials import InputError
-from materials.errors import nearest_name
-from validation.grains.distance import Comparison, compare
-from validation.grains.observation import Observation, read_observation
+from grainlaw.materials import InputError
+from grainlaw.materials.errors import nearest_name
+from grainlaw.validation.grains.distance import Comparison, compare
+from grainlaw.validation.grains.observation import Observation, read_observation
 
 REFERENCE = Path(__file__).resolve().parents[1] / "reference"
 COLLAPSES, SHEAR, SHEAR_START, COMPRESSION = "collapse", "shear.csv", "shear_start.csv", "compression.csv"

@@ -5,17 +5,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from materials import InputError, SimulationError, get_material
-from validation.case import Effort, Evidence
-from validation.cases import aluminium_bars
-from validation.dem_report.column import column_of
-from validation.dem_report.fitted_laws import FittedLaw, JudgedLaw, fitted
-from validation.dem_report.fitting_data import write_data
-from validation.dem_report.judged_laws import JUDGED_LAWS
-from validation.dem_report.judgement import Announce, Bench, Judgement
-from validation.dem_report.reference_set import Ensemble, ReferenceSet, Scatter, scatter
-from validation.dem_report.variants import CONTROLS, LIMITS, Variant
-from validation.grains.distance import Verdict
+from grainlaw.materials import InputError, SimulationError, get_material
+from grainlaw.validation.case import Effort, Evidence
+from grainlaw.validation.cases import aluminium_bars
+from grainlaw.validation.dem_report.column import column_of
+from grainlaw.validation.dem_report.fitted_laws import FittedLaw, JudgedLaw, fitted
+from grainlaw.validation.dem_report.fitting_data import write_data
+from grainlaw.validation.dem_report.judged_laws import JUDGED_LAWS
+from grainlaw.validation.dem_report.judgement import Announce, Bench, Judgement
+from grainlaw.validation.dem_report.reference_set import Ensemble, ReferenceSet, Scatter, scatter
+from grainlaw.validation.dem_report.variants import CONTROLS, LIMITS, Variant
+from grainlaw.validation.grains.distance import Verdict
 
 FLOOR = "glued"
 # The column on which controls and limits are run, and the only one of a quick report.

@@ -5,11 +5,11 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from mpm_core.output.pictures import draw_history, write_run_pictures
-from mpm_core.output.run_folder import RunFolder
-from mpm_core.recorder import SCENE_NAME
-from validation.dem_report.sections import ReportFigure, Section
-from validation.dem_report.tables import Table
+from grainlaw.mpm_core.output.pictures import draw_history, write_run_pictures
+from grainlaw.mpm_core.output.recorder import SCENE_NAME
+from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.validation.dem_report.sections import ReportFigure, Section
+from grainlaw.validation.dem_report.tables import Table
 
 COLUMNS = (
     "run",

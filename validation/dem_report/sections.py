@@ -3,19 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from validation.case import Evidence
-from validation.cases import aluminium_bars
-from validation.dem_report.figures import (
+from grainlaw.validation.case import Evidence
+from grainlaw.validation.cases import aluminium_bars
+from grainlaw.validation.dem_report.figures import (
     distance_figure,
     profile_figure,
     series_figure,
     shear_figure,
     stress_figure,
 )
-from validation.dem_report.judgement import Judgement
-from validation.dem_report.reference_set import Ensemble, Rows
-from validation.dem_report.report import Report
-from validation.dem_report.tables import (
+from grainlaw.validation.dem_report.judgement import Judgement
+from grainlaw.validation.dem_report.reference_set import Ensemble, Rows
+from grainlaw.validation.dem_report.report import Report
+from grainlaw.validation.dem_report.tables import (
     Table,
     cost_table,
     coverage_table,
@@ -27,8 +27,8 @@ from validation.dem_report.tables import (
     variant_table,
     verdict_table,
 )
-from validation.grains.distance import PROFILE_BAND
-from validation.report.plots import figure_image
+from grainlaw.validation.grains.distance import PROFILE_BAND
+from grainlaw.validation.report.plots import figure_image
 
 MODELLED = (
     "Both sides are observed by the same functions. Solid fraction: each grain, or material point, is spread by a "

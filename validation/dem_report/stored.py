@@ -6,9 +6,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from materials import InputError
-from validation.dem_report.sections import ReportFigure, Section
-from validation.dem_report.tables import Table
+from grainlaw.materials import InputError
+from grainlaw.validation.dem_report.sections import ReportFigure, Section
+from grainlaw.validation.dem_report.tables import Table
 
 SECTIONS = "sections.json"
 FORMAT = 1

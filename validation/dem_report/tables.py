@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.dem.catalogue import CASES
-from validation.dem.coverage import missing_runs, present_runs, seeds_told
-from validation.dem.runs import runs_of
-from validation.dem_report.fitted_laws import FittedLaw
-from validation.dem_report.judgement import Judgement
-from validation.dem_report.reference_set import REFERENCE, Ensemble, Scatter
-from validation.dem_report.report import Report
-from validation.grains.distance import MEASURES, PROFILE_BAND, Distance, Verdict
+from grainlaw.validation.dem.catalogue import CASES
+from grainlaw.validation.dem.coverage import missing_runs, present_runs, seeds_told
+from grainlaw.validation.dem.runs import runs_of
+from grainlaw.validation.dem_report.fitted_laws import FittedLaw
+from grainlaw.validation.dem_report.judgement import Judgement
+from grainlaw.validation.dem_report.reference_set import REFERENCE, Ensemble, Scatter
+from grainlaw.validation.dem_report.report import Report
+from grainlaw.validation.grains.distance import MEASURES, PROFILE_BAND, Distance, Verdict
 
 BANDS = (PROFILE_BAND, *(measure.band for measure in MEASURES))
 SYMBOLS = ("E_A", *(measure.symbol for measure in MEASURES))

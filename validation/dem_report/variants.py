@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from validation.grains.distance import Verdict
+from grainlaw.validation.grains.distance import Verdict
 
 
 @dataclass(frozen=True)

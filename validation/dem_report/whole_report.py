@@ -5,13 +5,12 @@ from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
-from materials import InputError
-from mpm_core.output import atomic
-from mpm_core.recorder import SCENE_NAME
-from validation.dem_report.run_sections import run_sections
-from validation.dem_report.sections import Section
-from validation.dem_report.stored import SECTIONS, read_sections, sections_as_json
-from validation.dem_report.write import rendered
+from grainlaw.materials import InputError, atomic
+from grainlaw.mpm_core.output.recorder import SCENE_NAME
+from grainlaw.validation.dem_report.run_sections import run_sections
+from grainlaw.validation.dem_report.sections import Section
+from grainlaw.validation.dem_report.stored import SECTIONS, read_sections, sections_as_json
+from grainlaw.validation.dem_report.write import rendered
 
 NAME, TITLE = "report", "Runs and comparisons"
 

@@ -10,15 +10,15 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader
 
-from mpm_core.output import atomic
-from validation.dem_report.fitted_laws import FittedLaw
-from validation.dem_report.judgement import Judgement
-from validation.dem_report.reference_set import Rows, Scatter
-from validation.dem_report.report import Report
-from validation.dem_report.sections import Section, sections
-from validation.dem_report.stored import SECTIONS, sections_as_json
-from validation.dem_report.tables import SYMBOLS
-from validation.grains.distance import Verdict
+from grainlaw.materials import atomic
+from grainlaw.validation.dem_report.fitted_laws import FittedLaw
+from grainlaw.validation.dem_report.judgement import Judgement
+from grainlaw.validation.dem_report.reference_set import Rows, Scatter
+from grainlaw.validation.dem_report.report import Report
+from grainlaw.validation.dem_report.sections import Section, sections
+from grainlaw.validation.dem_report.stored import SECTIONS, sections_as_json
+from grainlaw.validation.dem_report.tables import SYMBOLS
+from grainlaw.validation.grains.distance import Verdict
 
 PAGE, MARKDOWN, RESULT = "dem.html", "dem.md", "dem.json"
 TITLE = "Laws against grains"
@@ -40,7 +40,7 @@ def write_report(folder: Path, report: Report, shear: Rows, command: str) -> lis
 
 def rendered(template: str, title: str, introduction: Sequence[str], parts: Sequence[Section], command: str) -> str:
     """A page, or the same in Markdown, of sections."""
-    loader = PackageLoader("validation.report")
+    loader = PackageLoader("grainlaw.validation.report")
     environment = Environment(loader=loader, autoescape=template.endswith(".html"), trim_blocks=True)
     page = environment.get_template(template).render(
         title=title,

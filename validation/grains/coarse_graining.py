@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from validation.grains.snapshot import Array, GrainSnapshot, StressMoments
+from grainlaw.validation.grains.snapshot import Array, GrainSnapshot, StressMoments
 
 SPACING = 0.0075
 # Beyond it lies less than 1e-4 of a Gaussian.

@@ -6,9 +6,9 @@ from enum import StrEnum
 
 import numpy as np
 
-from materials import InputError
-from validation.grains.observation import Observation
-from validation.grains.snapshot import Array
+from grainlaw.materials import InputError
+from grainlaw.validation.grains.observation import Observation
+from grainlaw.validation.grains.snapshot import Array
 
 
 class Verdict(StrEnum):

@@ -8,7 +8,7 @@ floor is left out. Compression-positive; the momentum of fluctuations is not in 
 
 import numpy as np
 
-from validation.grains.snapshot import Array, StressMoments
+from grainlaw.validation.grains.snapshot import Array, StressMoments
 
 PIECES = 5
 

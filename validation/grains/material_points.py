@@ -7,13 +7,13 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from materials import InputError
-from mpm_core.body import Body
-from mpm_core.columns import DENSITY, SXX, SXY, SYY, VX, VY, X, Y
-from mpm_core.initial import build_bodies
-from mpm_core.output.run_folder import RunFolder
-from mpm_core.scene import Scene
-from validation.grains.snapshot import Array, GrainSnapshot, StressMoments
+from grainlaw.materials import InputError
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, VX, VY, X, Y
+from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.scene.initial_state import build_bodies
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.validation.grains.snapshot import Array, GrainSnapshot, StressMoments
 
 DEPTH = 1.0
 

@@ -13,10 +13,9 @@ from typing import Any
 import h5py
 import numpy as np
 
-from materials import InputError
-from materials.errors import nearest_name
-from mpm_core.output import atomic
-from validation.grains.snapshot import Array
+from grainlaw.materials import InputError, atomic
+from grainlaw.materials.errors import nearest_name
+from grainlaw.validation.grains.snapshot import Array
 
 FORMAT_ATTRIBUTE = "grainlaw_observation"
 FORMAT_VERSION = 1

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from materials import InputError
-from validation.grains.coarse_graining import (
+from grainlaw.materials import InputError
+from grainlaw.validation.grains.coarse_graining import (
     Kernel,
     Lattice,
     column_lattice,
@@ -16,11 +16,11 @@ from validation.grains.coarse_graining import (
     solid_fraction,
     stress,
 )
-from validation.grains.observation import Observation
-from validation.grains.readers.run_folder import read_snapshots
-from validation.grains.run_description import RunDescription, read_run_description
-from validation.grains.snapshot import Array, GrainSnapshot, sphere_diameters
-from validation.grains.surface import bulk_solid_fraction, fronts, interior_solid_fraction, surface_height
+from grainlaw.validation.grains.observation import Observation
+from grainlaw.validation.grains.readers.run_folder import read_snapshots
+from grainlaw.validation.grains.run_description import RunDescription, read_run_description
+from grainlaw.validation.grains.snapshot import Array, GrainSnapshot, sphere_diameters
+from grainlaw.validation.grains.surface import bulk_solid_fraction, fronts, interior_solid_fraction, surface_height
 
 # Room for the kernel around the material, in its widths.
 MARGIN = 4.0

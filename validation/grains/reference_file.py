@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from materials import InputError
-from validation.grains.observation import Observation, is_observation, read_observation
-from validation.grains.observe import observe, observe_folder, setting_of
-from validation.grains.readers.run_folder import read_snapshots
-from validation.grains.run_description import RUN_DESCRIPTION_NAME, read_run_description
-from validation.grains.surface_table import is_surface_table, read_surface_table
+from grainlaw.materials import InputError
+from grainlaw.validation.grains.observation import Observation, is_observation, read_observation
+from grainlaw.validation.grains.observe import observe, observe_folder, setting_of
+from grainlaw.validation.grains.readers.run_folder import read_snapshots
+from grainlaw.validation.grains.run_description import RUN_DESCRIPTION_NAME, read_run_description
+from grainlaw.validation.grains.surface_table import is_surface_table, read_surface_table
 
 
 def load_reference(path: Path) -> Observation:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from materials import InputError
+from grainlaw.materials import InputError
 
 RUN_DESCRIPTION_NAME = "run.json"
 

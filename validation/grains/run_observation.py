@@ -2,15 +2,15 @@
 
 from pathlib import Path
 
-from mpm_core.body import Body
-from mpm_core.columns import X
-from mpm_core.initial import build_bodies
-from mpm_core.output.run_folder import RunFolder
-from mpm_core.recorder import SCENE_NAME
-from mpm_core.scene import Scene
-from validation.grains.material_points import DEPTH, grain_density, mirrored, snapshots_of_run
-from validation.grains.observation import Observation
-from validation.grains.observe import Setting, observe
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.layout import X
+from grainlaw.mpm_core.output.recorder import SCENE_NAME
+from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.scene.initial_state import build_bodies
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.validation.grains.material_points import DEPTH, grain_density, mirrored, snapshots_of_run
+from grainlaw.validation.grains.observation import Observation
+from grainlaw.validation.grains.observe import Setting, observe
 
 
 def observe_run(folder: Path, width: float, density: float | None = None) -> Observation:

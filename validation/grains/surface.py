@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.ndimage import minimum_filter1d
 
-from validation.grains.coarse_graining import Lattice
-from validation.grains.snapshot import Array
+from grainlaw.validation.grains.coarse_graining import Lattice
+from grainlaw.validation.grains.snapshot import Array
 
 # Cells nearer than this to the surface or the floor are not interior; in widths of the kernel.
 MARGIN_BELOW_SURFACE = 2.0

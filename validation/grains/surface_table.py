@@ -13,12 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-from materials import InputError
-from validation.grains.coarse_graining import SPACING
-from validation.grains.observation import Observation
-from validation.grains.readers.raw_frame import parsed_rows, read_text
-from validation.grains.snapshot import Array
-from validation.grains.surface import fronts
+from grainlaw.materials import InputError
+from grainlaw.validation.grains.coarse_graining import SPACING
+from grainlaw.validation.grains.observation import Observation
+from grainlaw.validation.grains.readers.raw_frame import parsed_rows, read_text
+from grainlaw.validation.grains.snapshot import Array
+from grainlaw.validation.grains.surface import fronts
 
 COLUMNS = ("t", "x", "h")
 # Larger lengths than this are taken for millimetres.

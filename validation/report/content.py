@@ -6,8 +6,8 @@ from dataclasses import asdict
 from importlib.metadata import version
 from typing import Any
 
-from validation.case import Measurement
-from validation.result import CaseResult
+from grainlaw.validation.case import Measurement
+from grainlaw.validation.result import CaseResult
 
 
 def content(results: Sequence[CaseResult]) -> dict[str, Any]:

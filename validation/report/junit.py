@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from validation.result import CaseResult
+from grainlaw.validation.result import CaseResult
 
 
 def junit(results: Sequence[CaseResult]) -> str:

@@ -5,13 +5,13 @@ from importlib.metadata import version
 
 from jinja2 import Environment, PackageLoader
 
-from validation.report.plots import convergence_image, figure_image
-from validation.result import CaseResult
+from grainlaw.validation.report.plots import convergence_image, figure_image
+from grainlaw.validation.result import CaseResult
 
 
 def page(results: Sequence[CaseResult]) -> str:
     """A page with a table of all cases, and for each its reference, numbers, control, orders and plots."""
-    environment = Environment(loader=PackageLoader("validation.report"), autoescape=True, trim_blocks=True)
+    environment = Environment(loader=PackageLoader("grainlaw.validation.report"), autoescape=True, trim_blocks=True)
     environment.filters["significant"] = significant
     images = {result.case.name: _images(result) for result in results}
     return environment.get_template("page.html").render(

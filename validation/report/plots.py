@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 
-from validation.case import Convergence, Curve, Figure
+from grainlaw.validation.case import Convergence, Curve, Figure
 
 WIDTH, HEIGHT, RESOLUTION = 5.2, 3.6, 110
 MEASURED_COLORS = ("#d95f02", "#1b9e77", "#7570b3", "#e7298a")

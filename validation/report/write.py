@@ -4,12 +4,11 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from materials import InputError
-from mpm_core.output import atomic
-from validation.report.content import content
-from validation.report.junit import junit
-from validation.report.page import page
-from validation.result import CaseResult
+from grainlaw.materials import InputError, atomic
+from grainlaw.validation.report.content import content
+from grainlaw.validation.report.junit import junit
+from grainlaw.validation.report.page import page
+from grainlaw.validation.result import CaseResult
 
 
 def prepare(folder: Path) -> None:

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
-from materials import SimulationError
-from materials.precision import PRECISIONS
-from mpm_core.body import Body
-from validation.driven_square import PERIOD, Array, DrivenSquare
-from validation.speed_error.setting import WARM_UP_STEPS, make_steps
-from validation.speed_error.sweep import BASES, SAFETIES, SCHEMES
+from grainlaw.materials import SimulationError
+from grainlaw.materials.precision import PRECISIONS
+from grainlaw.mpm_core.body import Body
+from grainlaw.validation.driven_square import PERIOD, Array, DrivenSquare
+from grainlaw.validation.speed_error.setting import WARM_UP_STEPS, make_steps
+from grainlaw.validation.speed_error.sweep import BASES, SAFETIES, SCHEMES
 
 CELLS = (8, 16, 32)
 POINTS_PER_CELL = (4, 16)

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from statistics import mean
 from typing import TypeVar
 
-from validation.speed_error.setting import OBSERVABLES, Outcome
+from grainlaw.validation.speed_error.setting import OBSERVABLES, Outcome
 
 AnySetting = TypeVar("AnySetting")
 

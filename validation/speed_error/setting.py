@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from mpm_core.columns import X, Y
-from mpm_core.run import next_step
-from mpm_core.simulation import Simulation
-from mpm_core.sources import CORE_MARK
-from validation.collapses import collapse
+from grainlaw.mpm_core.kernels.sources import CORE_MARK
+from grainlaw.mpm_core.layout import X, Y
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.stepping.run import next_step
+from grainlaw.validation.collapses import collapse
 
 END = 1.5
 # Before the clock starts: kernels are compiled or loaded.

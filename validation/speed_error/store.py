@@ -4,10 +4,9 @@ import json
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from materials import SimulationError
-from mpm_core.output import atomic
-from mpm_core.sources import CORE_MARK
-from validation.speed_error.setting import Outcome, Setting, as_dict, measured_outcome
+from grainlaw.materials import SimulationError, atomic
+from grainlaw.mpm_core.kernels.sources import CORE_MARK
+from grainlaw.validation.speed_error.setting import Outcome, Setting, as_dict, measured_outcome
 
 
 def outcomes(

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
-from mpm_core.accuracy import SHORT_MEMORY
-from validation.speed_error.setting import Setting
+from grainlaw.mpm_core.scene.presets import SHORT_MEMORY
+from grainlaw.validation.speed_error.setting import Setting
 
 SAFETIES = (0.8, 0.4, 0.2)
 SCHEMES = ("affine_flip", "apic")

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from materials import InputError
-from materials.errors import nearest_name
-from validation.grains.readers import liggghts
-from validation.grains.readers.raw_frame import frame_of_rows, parsed_rows, read_text
-from validation.grains.snapshot import Array
+from grainlaw.materials import InputError
+from grainlaw.materials.errors import nearest_name
+from grainlaw.validation.grains.readers import liggghts
+from grainlaw.validation.grains.readers.raw_frame import frame_of_rows, parsed_rows, read_text
+from grainlaw.validation.grains.snapshot import Array
 
 NAMES = ("x1", "y1", "z1", "x2", "y2", "z2", "id1", "id2", "periodic", "fx", "fy", "fz")
 FIRST, SECOND, FORCE = NAMES[:3], NAMES[3:6], NAMES[9:]

@@ -10,8 +10,8 @@ from typing import Any
 import h5py
 import numpy as np
 
-from materials import InputError
-from validation.grains.readers.raw_frame import RawFrame
+from grainlaw.materials import InputError
+from grainlaw.validation.grains.readers.raw_frame import RawFrame
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 FRAMES = "frames"

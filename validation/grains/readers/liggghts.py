@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from materials import InputError
-from validation.grains.readers.raw_frame import RawFrame, frame_of_rows, parsed_rows, read_text
+from grainlaw.materials import InputError
+from grainlaw.validation.grains.readers.raw_frame import RawFrame, frame_of_rows, parsed_rows, read_text
 
 TABLE = ("ITEM: ATOMS", "ITEM: ENTRIES")
 

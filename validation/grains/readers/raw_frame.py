@@ -7,9 +7,9 @@ from typing import Protocol
 
 import numpy as np
 
-from materials import InputError
-from materials.errors import nearest_name
-from validation.grains.snapshot import Array, GrainSnapshot, sphere_diameters, sphere_volumes
+from grainlaw.materials import InputError
+from grainlaw.materials.errors import nearest_name
+from grainlaw.validation.grains.snapshot import Array, GrainSnapshot, sphere_diameters, sphere_volumes
 
 # One name for what codes call differently.
 ALIASES = {"r": "radius", "rad": "radius", "radii": "radius", "mask": "type"}

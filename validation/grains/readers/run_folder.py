@@ -4,13 +4,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from materials import InputError
-from validation.grains.love_weber import stress_of_contacts
-from validation.grains.readers import hdf5_grains, liggghts, text_table, vtk_points
-from validation.grains.readers.contacts import read_contacts
-from validation.grains.readers.raw_frame import RawFrame, Reader, snapshot_of
-from validation.grains.run_description import RUN_DESCRIPTION_NAME, RunDescription
-from validation.grains.snapshot import GrainSnapshot
+from grainlaw.materials import InputError
+from grainlaw.validation.grains.love_weber import stress_of_contacts
+from grainlaw.validation.grains.readers import hdf5_grains, liggghts, text_table, vtk_points
+from grainlaw.validation.grains.readers.contacts import read_contacts
+from grainlaw.validation.grains.readers.raw_frame import RawFrame, Reader, snapshot_of
+from grainlaw.validation.grains.run_description import RUN_DESCRIPTION_NAME, RunDescription
+from grainlaw.validation.grains.snapshot import GrainSnapshot
 
 READERS: tuple[Reader, ...] = (liggghts, hdf5_grains, vtk_points, text_table)
 START = 4096

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from materials import InputError
-from validation.grains.readers.raw_frame import RawFrame, frame_of_rows, parsed_rows, read_text
+from grainlaw.materials import InputError
+from grainlaw.validation.grains.readers.raw_frame import RawFrame, frame_of_rows, parsed_rows, read_text
 
 YADE_FORMAT = "#format"
 

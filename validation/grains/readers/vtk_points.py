@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from materials import InputError
-from validation.grains.readers.raw_frame import ALIASES, RawFrame
+from grainlaw.materials import InputError
+from grainlaw.validation.grains.readers.raw_frame import ALIASES, RawFrame
 
 ENDINGS = (".vtk", ".vtp", ".vtu")
 VELOCITY_NAMES = ("v", "velocity", "linVel")

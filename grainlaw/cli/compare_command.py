@@ -1,0 +1,99 @@
+"""`grainlaw compare`: finished runs side by side."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from grainlaw.mpm_core.output.run_folder import RunFolder
+
+
+def compare(
+    folders: Annotated[
+        list[Path], typer.Argument(metavar="DIR...", help="Folders of finished runs.", show_default=False)
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Also draw snapshots.png and history.png into this folder."),
+    ] = None,
+    field: Annotated[str, typer.Option("--field", help="Field of the snapshots.")] = "shear_strain",
+    dem: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--dem",
+            metavar="FILE",
+            help="Grains or an experiment to judge the runs by: a run's folder with run.json, a dump beside one, HDF5, "
+            "or a CSV of t, x, h; repeatable.",
+        ),
+    ] = None,
+) -> None:
+    """Print a table of the final states, and draw the snapshots at equal normalised runout (the paper's Figure 2).
+
+    With --dem: print how far each run is from the grains, and with --out write a page with profiles over time.
+    """
+    from rich.console import Console
+    from rich.table import Table
+
+    from grainlaw.mpm_core.output.run_folder import RunFolder
+
+    if dem:
+        _judge(folders, dem, out)
+        return
+    runs = [(folder.name, RunFolder(folder)) for folder in folders]
+    table = Table()
+    for heading in (
+        "run",
+        "law",
+        "points",
+        "runout [m]",
+        "height [m]",
+        "centre of mass [m]",
+        "kinetic [J/m]",
+        "wall [s]",
+    ):
+        table.add_column(heading, justify="left" if heading in ("run", "law") else "right")
+    for name, run in runs:
+        summary = run.summary
+        final = summary.final
+        table.add_row(
+            name,
+            summary.material,
+            f"{summary.points:,}",
+            f"{final.runout:.4f}",
+            f"{final.height:.4f}",
+            f"{final.center_of_mass_height:.4f}",
+            f"{final.kinetic_energy:.3g}",
+            f"{summary.wall_time:.1f}",
+        )
+    Console(width=120).print(table)
+    if out is not None:
+        _draw(runs, out, field)
+
+
+def _judge(folders: list[Path], dem: list[Path], out: Path | None) -> None:
+    from grainlaw.cli.dem_report_command import print_table
+    from grainlaw.validation.dem_report.own_grains import judged_runs, write_page
+    from grainlaw.validation.dem_report.tables import comparison_table
+    from grainlaw.validation.report.write import prepare
+
+    if out is not None:
+        prepare(out)
+    ensemble, judgements = judged_runs(folders, dem)
+    print_table(comparison_table(ensemble, judgements))
+    if out is not None:
+        references = " ".join(f"--dem {path}" for path in dem)
+        command = f"grainlaw compare {' '.join(str(path) for path in folders)} {references} --out {out}"
+        typer.echo(f"  {write_page(out, ensemble, judgements, command)}")
+
+
+def _draw(runs: list[tuple[str, "RunFolder"]], out: Path, field: str) -> None:
+    from grainlaw.mpm_core.output.pictures import draw_history
+    from grainlaw.mpm_core.output.snapshots import draw_snapshots
+
+    out.mkdir(parents=True, exist_ok=True)
+    limits = (0.0, 3.0) if field == "shear_strain" else None
+    draw_snapshots(runs, out / "snapshots.png", field, limits)
+    draw_history(runs, out / "history.png")
+    for picture in ("snapshots.png", "history.png"):
+        typer.echo(f"  {out / picture}")

@@ -1,0 +1,70 @@
+"""The command `grainlaw`: the sub-commands, and the exit codes (0 done, 2 bad input, 1 anything else)."""
+
+import sys
+from importlib.metadata import version
+from typing import Annotated
+
+import typer
+
+from grainlaw.cli.calibrate_command import calibrate
+from grainlaw.cli.check_command import check
+from grainlaw.cli.compare_command import compare
+from grainlaw.cli.dem_command import dem
+from grainlaw.cli.element_command import element
+from grainlaw.cli.materials_command import materials
+from grainlaw.cli.new_law_command import new_law
+from grainlaw.cli.plan_command import plan
+from grainlaw.cli.report_command import report
+from grainlaw.cli.run_command import run
+from grainlaw.cli.validate_command import validate
+from grainlaw.materials import InputError, SimulationError
+
+app = typer.Typer(
+    help="Constitutive laws for granular matter: list them, test them on one point, run them in a scene.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+# A command's module imports what it needs inside its function, so that no command pays for another's libraries.
+app.command("materials")(materials)
+app.command("element")(element)
+app.command("calibrate")(calibrate)
+app.command("run")(run)
+app.command("plan")(plan)
+app.command("compare")(compare)
+app.command("validate")(validate)
+app.command("report")(report)
+app.command("new-law")(new_law)
+app.command("check")(check)
+app.add_typer(dem, name="dem")
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"grainlaw {version('grainlaw')}")
+        raise typer.Exit()
+
+
+@app.callback()
+def _options(
+    show_version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and leave.")
+    ] = False,
+) -> None:
+    """Take the options that come before any command."""
+
+
+def main() -> None:
+    """Run the command line: bad input is one line on stderr and exit code 2, a failed computation exit code 1."""
+    try:
+        app()
+    except InputError as error:
+        _fail(error, 2)
+    except SimulationError as error:
+        _fail(error, 1)
+
+
+def _fail(error: Exception, code: int) -> None:
+    typer.echo(f"error: {error}", err=True)
+    sys.exit(code)

@@ -1,0 +1,42 @@
+"""Options that several commands share."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from grainlaw.materials import InputError, registry
+
+PluginFiles = Annotated[
+    list[Path] | None, typer.Option("--plugin", metavar="FILE.py", help="Also load the laws of this file; repeatable.")
+]
+
+
+def load_plugins(files: list[Path] | None) -> None:
+    """Register the laws of single files. Raises InputError if one of them is refused."""
+    for path in files or []:
+        registry().load_file(path)
+
+
+def assigned(assignments: list[str] | None, option: str = "--set") -> dict[str, str]:
+    """`name=value` texts as a dictionary. Raises InputError for a text without '=' and for a name given twice."""
+    values: dict[str, str] = {}
+    for text in assignments or []:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not (name and equals and value):
+            raise InputError(f"{option} {text}: expected name=value")
+        if name in values:
+            raise InputError(f"{option} {name} is given twice: {values[name]} and {value}")
+        values[name] = value
+    return values
+
+
+def numbers(values: dict[str, str], option: str = "--set") -> dict[str, float]:
+    """The values as numbers. Raises InputError for a text that is none."""
+    found = {}
+    for name, text in values.items():
+        try:
+            found[name] = float(text)
+        except ValueError:
+            raise InputError(f"{option} {name}={text}: '{text}' is not a number") from None
+    return found

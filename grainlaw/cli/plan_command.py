@@ -1,0 +1,51 @@
+"""`grainlaw plan`: what a scene will use and cost."""
+
+from typing import Annotated
+
+import typer
+
+from grainlaw.cli.options import PluginFiles, load_plugins
+from grainlaw.cli.scene_options import SceneFile, SetValues, load_scene
+
+
+def plan(
+    scene_file: SceneFile,
+    set_values: SetValues = None,
+    threads: Annotated[
+        int | None, typer.Option("--threads", min=1, metavar="N", help="Threads; default: idle cores.")
+    ] = None,
+    plugins: PluginFiles = None,
+) -> None:
+    """Print size, memory, time step and expected duration of a scene without running it."""
+    load_plugins(plugins)
+    scene = load_scene(scene_file, set_values)
+
+    from rich.console import Console
+    from rich.table import Table
+
+    from grainlaw.mpm_core.parallel.threads import usable_threads
+    from grainlaw.mpm_core.stepping.plan import plan as plan_scene
+
+    planned = plan_scene(scene, usable_threads(threads))
+    table = Table(title=scene.title or scene_file.stem, show_header=False)
+    rows = {
+        "laws": ", ".join(planned.laws),
+        "points": f"{planned.points:,}",
+        "cells of the domain": f"{planned.cells:,}",
+        "nodes in reach of the material": f"{planned.nodes_in_reach:,}",
+        "memory": f"{planned.memory_bytes / 1e6:.0f} MB, all included; {planned.bytes_per_point:.0f} bytes per point "
+        "in arrays",
+        "basis, transfer": f"{scene.transfer.basis}, {scene.transfer.scheme}, "
+        f"time constant {scene.transfer.time_constant:g} s",
+        "time step": f"{planned.step:.3g} s at the start (stable: {planned.stable_step:.3g} s)",
+        "steps": f"about {planned.steps:,}",
+        "rate": f"{planned.points / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "
+        f"{planned.threads} thread{'s' if planned.threads > 1 else ''}",
+        "expected duration": f"{planned.wall_time:.1f} s, of which output {planned.output_time:.1f} s",
+        "frames": f"{planned.frames}",
+        "fields of a frame": ", ".join(planned.fields),
+        "saved": "; ".join(planned.savings),
+    }
+    for name, value in rows.items():
+        table.add_row(name, value)
+    Console(width=110).print(table)

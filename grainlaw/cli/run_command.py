@@ -1,0 +1,65 @@
+"""`grainlaw run`: a scene from its file to a run's folder."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from grainlaw.cli.options import PluginFiles, load_plugins
+from grainlaw.cli.scene_options import SceneFile, SetValues, load_scene
+
+if TYPE_CHECKING:
+    from grainlaw.mpm_core.output.summary import RunSummary
+
+
+def run(
+    scene_file: SceneFile,
+    set_values: SetValues = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder of the run; default: runs/NAME of the scene file."),
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on from the folder's checkpoint.")] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the run that the folder holds.")] = False,
+    threads: Annotated[
+        int | None,
+        typer.Option("--threads", min=1, metavar="N", help="Threads; default: the idle cores. Same bits for any."),
+    ] = None,
+    plugins: PluginFiles = None,
+) -> None:
+    """Run a scene and write ParaView files, history, summary, checkpoint and pictures."""
+    load_plugins(plugins)
+    scene = load_scene(scene_file, set_values)
+    folder = out or Path("runs") / scene_file.stem
+
+    from grainlaw.cli.progress import reporting
+    from grainlaw.mpm_core.parallel.threads import usable_threads
+    from grainlaw.mpm_core.stepping.run import run as run_scene
+
+    with reporting(scene.time.end) as progress:
+        summary = run_scene(
+            scene, folder, threads=usable_threads(threads), resume=resume, overwrite=overwrite, progress=progress
+        )
+    _print_result(folder, summary)
+
+
+def _print_result(folder: Path, summary: "RunSummary") -> None:
+    final = summary.final
+    typer.echo(
+        f"{summary.scene or folder.name}: t = {summary.simulated_time:g} s, {summary.points} points, "
+        f"{summary.steps} steps in {summary.wall_time:.1f} s "
+        f"({summary.point_steps_per_second / 1e6:.1f} million point-steps/s on {summary.threads} threads)"
+    )
+    typer.echo(
+        f"runout {final.runout:.4f} m, height {final.height:.4f} m, "
+        f"centre of mass {final.center_of_mass_height:.4f} m, kinetic energy {final.kinetic_energy:.3g} J/m"
+    )
+    counts = ", ".join(
+        f"{count} {name.removeprefix('points_').replace('_', ' ')}" for name, count in summary.limited.items()
+    )
+    typer.echo(f"points bounded instead of clipped: {counts}; energy balance error {summary.energy_balance_error:.2%}")
+    for name in ("run.pvd", "run.vtkhdf", "history.csv", "summary.json"):
+        if (folder / name).exists():
+            typer.echo(f"  {folder / name}")
+    for picture in sorted(folder.glob("*.png")):
+        typer.echo(f"  {picture}")

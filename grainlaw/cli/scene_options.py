@@ -1,0 +1,35 @@
+"""The scene argument and the values set on top of it, shared by the commands that take a scene."""
+
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from grainlaw.cli.options import assigned
+
+if TYPE_CHECKING:
+    from grainlaw.mpm_core.scene.model import Scene
+
+SceneFile = Annotated[Path, typer.Argument(metavar="SCENE.toml", help="Scene file.", show_default=False)]
+SetValues = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="PATH=VALUE", help="Set a value of the scene, such as grid.cell_size=0.0125; repeatable."
+    ),
+]
+
+
+def load_scene(path: Path, set_values: list[str] | None) -> "Scene":
+    """The validated scene with the set values on top. Raises InputError."""
+    from grainlaw.mpm_core.scene.model import Scene
+
+    return Scene.load(path, {key: _value(text) for key, text in assigned(set_values).items()})
+
+
+def _value(text: str) -> Any:
+    """A value as TOML would read it; what is no TOML value is a string."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text

@@ -1,0 +1,1 @@
+"""The background grid and the nodes of it that are active."""

@@ -1,0 +1,297 @@
+"""From grid to points: velocity, its gradient, the density around, and motion. Knows no law.
+
+The moving-least-squares gradient of the grid's velocity at a point is L = sum_i w_i v_i (x_i - x_p)^T / D (Hu et al.
+2018). On top of it the point keeps what the grid did not resolve of its velocity field v + A (x - x_p), for a time
+constant tau:
+
+    v <- sum_i w_i v_i^new + exp(-dt/tau) (v - sum_i w_i v_i^old)
+    A <- L^new             + exp(-dt/tau) (A - L^old)
+
+so that tau = 0 is APIC (Jiang et al. 2015), tau = infinity affine FLIP, and the loss per second does not depend on the
+step. The energy of a point's field is m/2 (v^2 + A:A D); for tau = infinity the transfers keep its sum, but for terms
+of the order of dt.
+
+In some steps the grid also returns to each point pressure, density and crowding of the material around it, which tie
+the volumes of points to one another; where the scene asks for it, points then also move down the gradient of crowding
+(`volumes`).
+"""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit, prange
+from numba.extending import register_jitable
+
+from grainlaw.materials.compilation import named
+from grainlaw.materials.precision import PRECISIONS
+from grainlaw.materials.tensor import SymmetricTensor, shear_strain_rate
+from grainlaw.mpm_core.grid.grid import BULK, NEW_VX
+from grainlaw.mpm_core.kernels.g2p_nodes import make_gather
+from grainlaw.mpm_core.kernels.positions import place_access
+from grainlaw.mpm_core.kernels.shape_functions import Basis
+from grainlaw.mpm_core.kernels.simd.arithmetic import (
+    filled_like,
+    first_lanes,
+    greater,
+    largest,
+    lesser,
+    scaled_sum,
+    smallest,
+    total,
+    where_equal,
+    widened,
+)
+from grainlaw.mpm_core.kernels.simd.registers import LANES, LANES_OF, put, several_at, transposed_at
+from grainlaw.mpm_core.kernels.sources import CORE_MARK
+from grainlaw.mpm_core.kernels.stencil import GROUP, make_find_stencils
+from grainlaw.mpm_core.kernels.volume_coupling import spreading_rate
+from grainlaw.mpm_core.layout import AXX, AXY, AYX, AYY, CROWDING, LXX, LXY, LYX, LYY, MEAN_AROUND, SXX, SYY, VX, VY
+from grainlaw.mpm_core.parallel.blocks import points_of_block
+from grainlaw.mpm_core.parallel.work_sharing import next_part, shares_of, threads_of
+
+# What `grid_to_points` reports for each block of points.
+KINETIC_ENERGY, LOWEST_X, HIGHEST_X, LOWEST_Y, HIGHEST_Y, MAX_SPEED, MOVED_X, MOVED_Y = range(8)
+REPORTS = 8
+
+
+class Receiving(NamedTuple):
+    """How the points of a group receive; per axis, what belongs to one node for the whole group side by side.
+
+    starts                number of the first node
+    weights_x, weights_y  w
+    slopes_x, slopes_y    w (i - f)/(h moment) [1/m], of which the moving-least-squares gradient is made
+    moment_x, moment_y    second moments of the weights, in cells squared
+    """
+
+    starts: Any
+    weights_x: Any
+    weights_y: Any
+    slopes_x: Any
+    slopes_y: Any
+    moment_x: Any
+    moment_y: Any
+
+
+class Gathered(NamedTuple):
+    """Four components that the points of a group receive, those of each point side by side, and their gradients.
+
+    The components are new and old velocity, or the bulk: mass, crowding, pressure and density of the nodes around.
+    """
+
+    means: Any
+    gradients_x: Any
+    gradients_y: Any
+
+
+class Sums(NamedTuple):
+    """What is reported, over the points so far, in as many lanes as points are taken at once, as doubles."""
+
+    twice_energy: Any
+    moved_x: Any
+    moved_y: Any
+    fastest_squared: Any
+    lowest_x: Any
+    highest_x: Any
+    lowest_y: Any
+    highest_y: Any
+
+
+@register_jitable(forceinline=True)
+def no_sums(like):  # type: ignore[no-untyped-def]
+    """The sums over no points, in lanes like others."""
+    zero, infinite, negative = filled_like(0.0, like), filled_like(np.inf, like), filled_like(-np.inf, like)
+    return Sums(zero, zero, zero, zero, infinite, negative, infinite, negative)
+
+
+@register_jitable(forceinline=True)
+def added_to_sums(sums, twice_energy, moved_x, moved_y, x, y, count, at_once):  # type: ignore[no-untyped-def]
+    """The sums with some points more, of which only the first `count` exist."""
+    lowest_x, lowest_y, highest_x, highest_y = x, y, x, y
+    if count < at_once:
+        twice_energy = first_lanes(twice_energy, count, 0.0)
+        moved_x, moved_y = first_lanes(moved_x, count, 0.0), first_lanes(moved_y, count, 0.0)
+        lowest_x, lowest_y = first_lanes(x, count, np.inf), first_lanes(y, count, np.inf)
+        highest_x, highest_y = first_lanes(x, count, -np.inf), first_lanes(y, count, -np.inf)
+    return Sums(
+        sums.twice_energy + twice_energy,
+        sums.moved_x + moved_x,
+        sums.moved_y + moved_y,
+        greater(sums.fastest_squared, moved_x * moved_x + moved_y * moved_y),
+        lesser(sums.lowest_x, lowest_x),
+        greater(sums.highest_x, highest_x),
+        lesser(sums.lowest_y, lowest_y),
+        greater(sums.highest_y, highest_y),
+    )
+
+
+@register_jitable(forceinline=True)
+def report(reports, block, point_mass, sums):  # type: ignore[no-untyped-def]
+    """Store the sums over a block."""
+    reports[block, KINETIC_ENERGY] = 0.5 * point_mass * total(sums.twice_energy)
+    reports[block, LOWEST_X], reports[block, HIGHEST_X] = smallest(sums.lowest_x), largest(sums.highest_x)
+    reports[block, LOWEST_Y], reports[block, HIGHEST_Y] = smallest(sums.lowest_y), largest(sums.highest_y)
+    reports[block, MAX_SPEED] = np.sqrt(largest(sums.fastest_squared))
+    reports[block, MOVED_X], reports[block, MOVED_Y] = (
+        point_mass * total(sums.moved_x),
+        point_mass * total(sums.moved_y),
+    )
+
+
+@register_jitable(forceinline=True)
+def updated_affine(affine, gradient, p, new, old, memory):  # type: ignore[no-untyped-def]
+    """Store one component of L, and of A with what it remembers; returns the latter."""
+    put(gradient, p, new)
+    value = scaled_sum(memory, several_at(affine, p) - old, new)
+    put(affine, p, value)
+    return value
+
+
+@register_jitable(forceinline=True)
+def updated_gradients(rows, first, last, at_once, cell_size, memory, receiving, velocities, energies):  # type: ignore[no-untyped-def]
+    """Update L and A of a group; `energies` receives A:A D of the points."""
+    lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+    axx, axy, ayx, ayy = rows[AXX], rows[AXY], rows[AYX], rows[AYY]
+    square = cell_size * cell_size
+    for p in range(first, last, at_once):
+        k = p - first
+        new_xx, new_yx, old_xx, old_yx = transposed_at(velocities.gradients_x, k)
+        new_xy, new_yy, old_xy, old_yy = transposed_at(velocities.gradients_y, k)
+        xx = updated_affine(axx, lxx, p, new_xx, old_xx, memory)
+        yx = updated_affine(ayx, lyx, p, new_yx, old_yx, memory)
+        xy = updated_affine(axy, lxy, p, new_xy, old_xy, memory)
+        yy = updated_affine(ayy, lyy, p, new_yy, old_yy, memory)
+        along_x = (xx * xx + yx * yx) * several_at(receiving.moment_x, k)
+        along_y = (xy * xy + yy * yy) * several_at(receiving.moment_y, k)
+        put(energies, k, square * (along_x + along_y))
+
+
+@register_jitable(forceinline=True)
+def updated_surroundings(rows, first, last, at_once, bulk):  # type: ignore[no-untyped-def]
+    """Update the averages of the material around a group."""
+    mean_around, crowding, sxx, syy = rows[MEAN_AROUND], rows[CROWDING], rows[SXX], rows[SYY]
+    for p in range(first, last, at_once):
+        _, crowded, pressure, density = transposed_at(bulk.means, p - first)
+        put(crowding, p, crowded)
+        without_sxx = where_equal(several_at(syy, p), 0.0, density, pressure)
+        put(mean_around, p, where_equal(several_at(sxx, p), 0.0, without_sxx, pressure))
+
+
+@register_jitable(forceinline=True)
+def spread(rows, first, last, at_once, cell_size, dt, receiving, bulk, place_at, put_place):  # type: ignore[no-untyped-def]
+    """Move a group down the gradient of crowding, besides the motion of the material."""
+    lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
+    for p in range(first, last, at_once):
+        k = p - first
+        shear = 0.5 * (several_at(lxy, p) + several_at(lyx, p))
+        shear_rate = shear_strain_rate(SymmetricTensor(several_at(lxx, p), several_at(lyy, p), 0.0, shear, 0.0, 0.0))
+        way = dt * cell_size * cell_size * spreading_rate(shear_rate, dt)
+        _, slope_x, _, _ = transposed_at(bulk.gradients_x, k)
+        _, slope_y, _, _ = transposed_at(bulk.gradients_y, k)
+        x, y = place_at(rows, p)
+        way_x, way_y = (
+            way * several_at(receiving.moment_x, k) * slope_x,
+            way * several_at(receiving.moment_y, k) * slope_y,
+        )
+        put_place(rows, p, x - widened(way_x), y - widened(way_y))
+
+
+@register_jitable(forceinline=True)
+def moved(rows, first, last, at_once, dt, memory, velocities, energies, sums, place_at, put_place):  # type: ignore[no-untyped-def]
+    """Update velocities and places of a group; returns the sums with it."""
+    vx, vy = rows[VX], rows[VY]
+    for p in range(first, last, at_once):
+        new_vx, new_vy, old_vx, old_vy = transposed_at(velocities.means, p - first)
+        velocity_x = scaled_sum(memory, several_at(vx, p) - old_vx, new_vx)
+        velocity_y = scaled_sum(memory, several_at(vy, p) - old_vy, new_vy)
+        x, y = place_at(rows, p)
+        moved_x, moved_y = widened(new_vx), widened(new_vy)
+        new_x, new_y = scaled_sum(dt, moved_x, x), scaled_sum(dt, moved_y, y)
+        put(vx, p, velocity_x)
+        put(vy, p, velocity_y)
+        put_place(rows, p, new_x, new_y)
+        twice_energy = velocity_x * velocity_x + velocity_y * velocity_y + several_at(energies, p - first)
+        count = float(last - p)
+        sums = added_to_sums(sums, widened(twice_energy), moved_x, moved_y, new_x, new_y, count, at_once)
+    return sums
+
+
+def make_put_receiving(basis: Basis, precision: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Functions that make room for how a group receives, and store that of the points from p on that go at once."""
+    width, find_stencils, number = basis.width, make_find_stencils(basis, precision), PRECISIONS[precision]
+
+    @register_jitable(forceinline=True)
+    @named(f"{basis.name}_{precision}_{CORE_MARK}")
+    def room_for_receiving():  # type: ignore[no-untyped-def]
+        starts, moments, per_node = np.empty(GROUP), np.empty((2, GROUP), number), np.empty((4, width * GROUP), number)
+        return Receiving(starts, per_node[0], per_node[1], per_node[2], per_node[3], moments[0], moments[1])
+
+    @register_jitable(forceinline=True)
+    @named(f"{basis.name}_{precision}_{CORE_MARK}")
+    def put_axis(k, axis, inverse_size, weights, slopes, moments):  # type: ignore[no-untyped-def]
+        scale = inverse_size * axis.per_moment
+        for a in range(width):
+            put(weights, a * GROUP + k, axis.weights[a])
+            put(slopes, a * GROUP + k, axis.weights[a] * (float(a) - axis.place) * scale)
+        put(moments, k, axis.moment)
+
+    @register_jitable(forceinline=True)
+    @named(f"{basis.name}_{precision}_{CORE_MARK}")
+    def put_receiving(rows, p, k, nodes_y, ghosts, origin, inverse_size, receiving):  # type: ignore[no-untyped-def]
+        starts, weights_x, weights_y, slopes_x, slopes_y, moment_x, moment_y = receiving
+        number, along_x, along_y = find_stencils(rows, p, nodes_y, ghosts, origin, inverse_size)
+        put(starts, k, number)
+        put_axis(k, along_x, inverse_size, weights_x, slopes_x, moment_x)
+        put_axis(k, along_y, inverse_size, weights_y, slopes_y, moment_y)
+
+    return room_for_receiving, put_receiving
+
+
+@cache
+def make_grid_to_points(basis: Basis, ties: bool, spreads: bool, precision: str) -> Callable[..., Any]:
+    """Give the points velocity, its gradient and, if `ties`, averages of the material around, and move them.
+
+    With `spreads`, points also move down the gradient of crowding. `memory` is exp(-dt/tau). Reports per block of
+    points: kinetic energy [J/m], corners of the bounding box [m], the largest speed at which a point moves [m/s] and
+    the momentum of that motion [kg/s].
+    """
+    gather_velocities = make_gather(basis, NEW_VX, True, precision)
+    gather_bulk = make_gather(basis, BULK, spreads, precision)
+    room_for_receiving, put_receiving = make_put_receiving(basis, precision)
+    rows_of_points, place_at, put_place, *_ = place_access(precision)
+    number, at_once = PRECISIONS[precision], LANES_OF[precision]
+
+    @njit(parallel=True, error_model="numpy", cache=True)
+    @named(f"{basis.name}_{ties:d}{spreads:d}_{precision}_{CORE_MARK}")
+    def grid_to_points(  # type: ignore[no-untyped-def]
+        storage, count, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, memory, threads, reports
+    ):
+        rows, inverse_size = rows_of_points(storage), 1.0 / cell_size
+        shares = shares_of(reports.shape[0], threads)
+        for thread in prange(threads_of(shares)):
+            receiving, room = room_for_receiving(), np.empty((7, GROUP * LANES), number)
+            velocities, bulk = Gathered(room[0], room[1], room[2]), Gathered(room[3], room[4], room[5])
+            energies = room[6]
+            block = next_part(shares, thread)
+            while block >= 0:
+                sums = no_sums(place_at(rows, np.uint64(0))[0])
+                begin, end = points_of_block(block, reports.shape[0], count)
+                for start in range(begin, end, GROUP):
+                    first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
+                    for p in range(first, last, at_once):
+                        put_receiving(rows, p, p - first, nodes_y, ghosts, origin, inverse_size, receiving)
+                    gather_velocities(last - first, nodes, nodes_y, receiving, velocities)
+                    updated_gradients(rows, first, last, at_once, cell_size, memory, receiving, velocities, energies)
+                    if ties:
+                        gather_bulk(last - first, nodes, nodes_y, receiving, bulk)
+                        updated_surroundings(rows, first, last, at_once, bulk)
+                    sums = moved(
+                        rows, first, last, at_once, dt, memory, velocities, energies, sums, place_at, put_place
+                    )
+                    if spreads:
+                        spread(rows, first, last, at_once, cell_size, dt, receiving, bulk, place_at, put_place)
+                report(reports, block, point_mass, sums)
+                block = next_part(shares, thread)
+
+    return grid_to_points

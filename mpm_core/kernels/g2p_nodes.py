@@ -1,0 +1,74 @@
+"""Gathering from the nodes of their stencils what points receive, four components of a node side by side."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba.extending import register_jitable
+
+from grainlaw.materials.compilation import named
+from grainlaw.mpm_core.grid.grid import COMPONENTS
+from grainlaw.mpm_core.kernels.shape_functions import Basis
+from grainlaw.mpm_core.kernels.simd.arithmetic import filled_like, scaled_sum
+from grainlaw.mpm_core.kernels.simd.registers import (
+    LANES,
+    first_half,
+    put,
+    quad_at,
+    second_half,
+    single_quad_at,
+    twice_at,
+    two_numbers,
+)
+from grainlaw.mpm_core.kernels.sources import CORE_MARK
+from grainlaw.mpm_core.kernels.stencil import GROUP
+
+
+def make_gather(basis: Basis, component: int, with_gradients: bool, precision: str) -> Callable[..., Any]:
+    """A function that fills what a group receives of four components of the nodes, and of their gradients.
+
+    With gradients, a sum along y and its gradient go side by side.
+    """
+    width, first_component = basis.width, np.uint64(component)
+    quad_of_precision = quad_at if precision == "double" else single_quad_at
+    values_at, weights_at = (twice_at, _weight_and_slope) if with_gradients else (quad_of_precision, _weight)
+
+    @register_jitable(forceinline=True)
+    @named(f"{basis.name}_{component}_{with_gradients:d}_{precision}_{CORE_MARK}")
+    def gather(count, nodes, nodes_y, receiving, gathered):  # type: ignore[no-untyped-def]
+        starts, weights_x, weights_y, slopes_x, slopes_y, _, _ = receiving
+        means, gradients_x, gradients_y = gathered
+        row_length = np.uint64(nodes_y * COMPONENTS)
+        for k in range(count):
+            row = np.uint64(starts[k]) * np.uint64(COMPONENTS) + first_component
+            along_y = filled_like(0.0, values_at(nodes, row))
+            gradient_x = first_half(along_y)
+            for a in range(width):
+                in_row = filled_like(0.0, along_y)
+                for b in range(width):
+                    at = np.uint64(b * GROUP) + k
+                    values = values_at(nodes, row + np.uint64(b * COMPONENTS))
+                    in_row = scaled_sum(weights_at(weights_y, slopes_y, at), values, in_row)
+                at = np.uint64(a * GROUP) + k
+                along_y = scaled_sum(weights_x[at], in_row, along_y)
+                if with_gradients:
+                    gradient_x = scaled_sum(slopes_x[at], first_half(in_row), gradient_x)
+                row += row_length
+            if with_gradients:
+                put(means, LANES * k, first_half(along_y))
+                put(gradients_x, LANES * k, gradient_x)
+                put(gradients_y, LANES * k, second_half(along_y))
+            else:
+                put(means, LANES * k, along_y)
+
+    return gather
+
+
+@register_jitable(forceinline=True)
+def _weight(weights_y, slopes_y, at):  # type: ignore[no-untyped-def]
+    return weights_y[at]
+
+
+@register_jitable(forceinline=True)
+def _weight_and_slope(weights_y, slopes_y, at):  # type: ignore[no-untyped-def]
+    return two_numbers(weights_y[at], slopes_y[at])

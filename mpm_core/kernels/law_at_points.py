@@ -1,0 +1,235 @@
+"""A law at the points: its state in their rows, its update, its short way for small steps, and its sound speed.
+
+What is stored for a point is turned into numbers of the kind that the law computes with.
+"""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba.cpython.unsafe.tuple import tuple_setitem
+from numba.extending import register_jitable
+
+from grainlaw.materials.compilation import PointwiseLaw, named
+from grainlaw.materials.precision import PRECISIONS
+from grainlaw.materials.single_precision import adaptable, in_precision
+from grainlaw.materials.tensor import SymmetricTensor, added, isotropic
+from grainlaw.mpm_core.kernels.simd.loop import side_by_side
+from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ, VX, VY
+
+
+@register_jitable
+def replaced(values, k, value):  # type: ignore[no-untyped-def]
+    """A copy of a tuple with one item replaced.
+
+    A function of this module rather than a call in `load`: the disk cache is keyed on what a kernel closes over, and
+    the compiler's intrinsic itself is another object in every process.
+    """
+    return tuple_setitem(values, k, value)  # type: ignore[call-arg]
+
+
+@register_jitable
+def ordered_bits(value):  # type: ignore[no-untyped-def]
+    """The bits of a non-negative float as an integer: the same order, and NaN above everything.
+
+    A maximum of integers is vectorised and keeps NaN; a maximum of floats does one or the other.
+    """
+    return np.float64(value).view(np.int64)
+
+
+def make_state_access(
+    state_class: type[Any], mark: str, precision: str = "double"
+) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Functions that load a law's state of one point from its rows, and store it."""
+    zeros = (PRECISIONS[precision](0.0),) * len(state_class._fields)
+    load_values, store_values = _load_none, _store_none
+    for k in range(len(zeros)):
+        load_values, store_values = _with_variable(k, load_values, store_values, mark, precision)
+
+    @register_jitable
+    @named(mark)
+    def load(rows, p):  # type: ignore[no-untyped-def]
+        return state_class(*load_values(rows, p, zeros))
+
+    return load, store_values
+
+
+@register_jitable
+def _load_none(rows, p, values):  # type: ignore[no-untyped-def]
+    return values
+
+
+@register_jitable
+def _store_none(rows, p, state):  # type: ignore[no-untyped-def]
+    pass
+
+
+def _with_variable(
+    k: int,
+    load_others: Callable[..., Any],
+    store_others: Callable[..., Any],
+    mark: str,
+    precision: str,
+) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Access to one state variable more. Its row is fixed when the functions are made, as the compiler wants it."""
+    row, number = FIRST_STATE + k, PRECISIONS[precision]
+
+    @register_jitable
+    @named(f"{mark}_{k}")
+    def load(rows, p, values):  # type: ignore[no-untyped-def]
+        return replaced(load_others(rows, p, values), k, number(rows[row][p]))
+
+    @register_jitable
+    @named(f"{mark}_{k}")
+    def store(rows, p, state):  # type: ignore[no-untyped-def]
+        store_others(rows, p, state)
+        rows[row][p] = state[k]
+
+    return load, store
+
+
+def make_apply_law(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
+    """The loop over points that calls a law; `ties` are compressive strains besides those of the motion."""
+    if law.small_step is None:
+        return _make_update(law, mark)
+    update, take_small_steps = _make_update(law, mark), _make_small_steps(law, law.small_step, mark)
+
+    @register_jitable
+    @named(mark)
+    def apply_law(rows, first, last, ties, parameters, dt):  # type: ignore[no-untyped-def]
+        pending = np.empty(last - first, np.int64)
+        take_small_steps(rows, first, last, ties, parameters, dt, pending)
+        for p in range(first, last):
+            if pending[p - first]:
+                update(rows, p, p + np.uint64(1), ties[p - first :], parameters, dt)
+
+    return apply_law
+
+
+class PointAccess(NamedTuple):
+    """What compiled code reads of a point, as numbers of one kind.
+
+    stress       (rows, p) -> the stress [Pa]
+    strain_rate  (rows, p, tie, dt) -> that of the motion, less a compressive strain [1] over the step [1/s]
+    """
+
+    stress: Callable[..., Any]
+    strain_rate: Callable[..., Any]
+
+
+@cache
+def point_access(precision: str) -> PointAccess:
+    """The access for a law that computes in a precision."""
+    number = PRECISIONS[precision]
+    nothing = number(0.0)
+
+    @register_jitable(forceinline=True)
+    @named(precision)
+    def stress_at(rows, p):  # type: ignore[no-untyped-def]
+        xx, yy, zz, xy = number(rows[SXX][p]), number(rows[SYY][p]), number(rows[SZZ][p]), number(rows[SXY][p])
+        return SymmetricTensor(xx, yy, zz, xy, nothing, nothing)
+
+    @adaptable
+    @named(precision)
+    def strain_rate_at(rows, p, tie, dt):  # type: ignore[no-untyped-def]
+        shear = 0.5 * (number(rows[LXY][p]) + number(rows[LYX][p]))
+        motion = SymmetricTensor(number(rows[LXX][p]), number(rows[LYY][p]), nothing, shear, nothing, nothing)
+        return added(motion, isotropic(number(tie) * (-1.0 / (3.0 * dt))))
+
+    return PointAccess(stress_at, in_precision(strain_rate_at, precision))
+
+
+@register_jitable(forceinline=True)
+def _put_stress(rows, p, stress):  # type: ignore[no-untyped-def]
+    rows[SXX][p], rows[SYY][p], rows[SZZ][p], rows[SXY][p] = stress.xx, stress.yy, stress.zz, stress.xy
+
+
+def _make_update(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
+    law_update, parameter_class, number = law.update, law.parameters, PRECISIONS[law.precision]
+    stress_at, strain_rate_at = point_access(law.precision)
+    load, store = make_state_access(law.state, mark, law.precision)
+
+    @register_jitable(forceinline=True)
+    @named(mark)
+    def update_one(p, rows, first, ties, law_parameters, dt):  # type: ignore[no-untyped-def]
+        stress, strain_rate = stress_at(rows, p), strain_rate_at(rows, p, ties[p - first], dt)
+        stress, state = law_update(stress, strain_rate, number(rows[DENSITY][p]), load(rows, p), law_parameters, dt)
+        _put_stress(rows, p, stress)
+        store(rows, p, state)
+
+    @register_jitable
+    @named(mark)
+    def update(rows, first, last, ties, parameters, dt):  # type: ignore[no-untyped-def]
+        side_by_side(first, last, update_one, (rows, first, ties, parameter_class(*parameters), number(dt)))
+
+    return update
+
+
+def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: str) -> Callable[..., Any]:
+    """Without a branch but for what is stored, so that the compiler takes several points at once."""
+    parameter_class, number = law.parameters, PRECISIONS[law.precision]
+    stress_at, strain_rate_at = point_access(law.precision)
+    load, store = make_state_access(law.state, mark, law.precision)
+
+    @register_jitable(forceinline=True)
+    @named(mark)
+    def take_one(p, rows, first, ties, law_parameters, dt, pending):  # type: ignore[no-untyped-def]
+        stress, strain_rate = stress_at(rows, p), strain_rate_at(rows, p, ties[p - first], dt)
+        state, density = load(rows, p), number(rows[DENSITY][p])
+        stress, state, succeeded = small_step(stress, strain_rate, density, state, law_parameters, dt)
+        pending[p - first] = not succeeded
+        if succeeded:
+            _put_stress(rows, p, stress)
+            store(rows, p, state)
+
+    @register_jitable
+    @named(mark)
+    def take_small_steps(rows, first, last, ties, parameters, dt, pending):  # type: ignore[no-untyped-def]
+        arguments = rows, first, ties, parameter_class(*parameters), number(dt), pending
+        side_by_side(first, last, take_one, arguments)
+
+    return take_small_steps
+
+
+def make_largest_signal_speed(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
+    """The largest sum of sound speed and speed of some points [m/s], as ordered bits; NaN if anything is not finite.
+
+    Of single points: with largest sound speed and largest speed of a group apart, the step would depend on the order of
+    the points, and a turned scene would not turn out the same.
+    """
+    sound_speed, parameter_class, number = law.sound_speed, law.parameters, PRECISIONS[law.precision]
+    (stress_at, _), (load, _) = point_access(law.precision), make_state_access(law.state, mark, law.precision)
+
+    @adaptable
+    @named(mark)
+    def largest_signal_speed(rows, first, last, parameters):  # type: ignore[no-untyped-def]
+        vx, vy = rows[VX], rows[VY]
+        density, law_parameters = rows[DENSITY], parameter_class(*parameters)
+        fastest = np.int64(0)
+        for p in range(first, last):
+            stress = stress_at(rows, p)
+            sound = sound_speed(stress, number(density[p]), load(rows, p), law_parameters)
+            not_finite = 0.0 * (stress.xx + stress.yy + stress.zz + stress.xy)
+            speed = np.sqrt(vx[p] * vx[p] + vy[p] * vy[p])
+            fastest = max(fastest, ordered_bits(speed + sound + not_finite))
+        return fastest
+
+    return in_precision(largest_signal_speed, law.precision)
+
+
+def make_find_stiffness(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
+    """The stiffness rho c^2 of some points [Pa]."""
+    sound_speed, parameter_class, number = law.sound_speed, law.parameters, PRECISIONS[law.precision]
+    (stress_at, _), (load, _) = point_access(law.precision), make_state_access(law.state, mark, law.precision)
+
+    @register_jitable
+    @named(mark)
+    def find_stiffness(rows, first, last, parameters, stiffness):  # type: ignore[no-untyped-def]
+        law_parameters = parameter_class(*parameters)
+        for p in range(first, last):
+            density = number(rows[DENSITY][p])
+            sound = sound_speed(stress_at(rows, p), density, load(rows, p), law_parameters)
+            stiffness[p - first] = density * sound * sound
+
+    return find_stiffness

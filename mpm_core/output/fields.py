@@ -1,0 +1,126 @@
+"""The fields of a frame: each declared once, computed only when a scene asks for it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grainlaw.materials import InputError, SymmetricTensor
+from grainlaw.materials.errors import nearest_name
+from grainlaw.materials.law import Law
+from grainlaw.materials.tensor import deviatoric_stress, pressure
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.kernels.invariants import over_stress
+from grainlaw.mpm_core.layout import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ, VX, VY
+from grainlaw.mpm_core.output.frame import Field, Frame
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FieldDeclaration:
+    """Name, SI unit, doc, and how to compute the field of a body; `needs` names a parameter that a law must have."""
+
+    name: str
+    unit: str
+    doc: str
+    compute: Callable[[Body], Array]
+    needs: str = ""
+
+
+def _stress_invariant(function: Callable[[SymmetricTensor], float]) -> Callable[[Body], Array]:
+    def compute(body: Body) -> Array:
+        values = np.empty(body.count)
+        over_stress(function)(body.points, values)
+        return values
+
+    return compute
+
+
+def _column(index: int) -> Callable[[Body], Array]:
+    return lambda body: body.points[index]
+
+
+def _velocity(body: Body) -> Array:
+    return np.column_stack([body.points[VX], body.points[VY], np.zeros(body.count)])
+
+
+def _solid_fraction(body: Body) -> Array:
+    return np.asarray(body.points[DENSITY] / body.parameters.grain_density)
+
+
+def _volumetric_strain_rate(body: Body) -> Array:
+    return np.asarray(-(body.points[LXX] + body.points[LYY]))
+
+
+FIELDS = {
+    field.name: field
+    for field in (
+        FieldDeclaration("velocity", "m/s", "velocity", _velocity),
+        FieldDeclaration("pressure", "Pa", "p = -tr(sigma)/3, compression-positive", _stress_invariant(pressure)),
+        FieldDeclaration("deviatoric_stress", "Pa", "q = sqrt(3/2 s:s)", _stress_invariant(deviatoric_stress)),
+        FieldDeclaration(
+            "shear_strain",
+            "1",
+            "accumulated shear strain, integral of sqrt(1/2 D_d:D_d) dt",
+            lambda body: body.shear_strain,
+        ),
+        FieldDeclaration("density", "kg/m3", "bulk density", _column(DENSITY)),
+        FieldDeclaration("solid_fraction", "1", "bulk density over grain density", _solid_fraction, "grain_density"),
+        FieldDeclaration("volumetric_strain_rate", "1/s", "-tr(D), compression-positive", _volumetric_strain_rate),
+        FieldDeclaration("stress_xx", "Pa", "sigma_xx, tension-positive", _column(SXX)),
+        FieldDeclaration("stress_yy", "Pa", "sigma_yy, tension-positive", _column(SYY)),
+        FieldDeclaration("stress_zz", "Pa", "sigma_zz, tension-positive", _column(SZZ)),
+        FieldDeclaration("stress_xy", "Pa", "sigma_xy", _column(SXY)),
+    )
+}
+BODY_FIELD = "body"
+_DEFAULTS = ("velocity", "pressure", "deviatoric_stress", "shear_strain", "solid_fraction")
+
+
+def chosen_fields(requested: list[str] | None, laws: Sequence[Law]) -> list[str]:
+    """The names of the fields to write. Raises InputError for a name that neither the core nor any law knows."""
+    states = {name: declared for law in laws for name, declared in law.state_declarations.items()}
+    if requested is None:
+        available = [name for name in _DEFAULTS if _is_available(name, laws)]
+        return available + [name for name, declared in states.items() if declared.output]
+    for name in requested:
+        if name not in FIELDS and name not in states and name != BODY_FIELD:
+            raise InputError(
+                f"output.fields: unknown field '{name}'; {nearest_name(name, [*FIELDS, *states, BODY_FIELD])}"
+            )
+        if name in FIELDS and not _is_available(name, laws):
+            raise InputError(f"output.fields: '{name}' needs a law with the parameter '{FIELDS[name].needs}'")
+    return list(requested)
+
+
+def _is_available(name: str, laws: Sequence[Law]) -> bool:
+    needed = FIELDS[name].needs
+    return not needed or all(needed in law.parameters._fields for law in laws)
+
+
+def make_frame(time: float, step: int, bodies: Sequence[Body], names: Sequence[str]) -> Frame:
+    """A frame of all bodies, in the order in which their points were generated."""
+    order = np.argsort(np.concatenate([body.ids for body in bodies]))
+    plane = np.concatenate([body.places.T for body in bodies])
+    positions = np.column_stack([plane, np.zeros(len(plane))])
+    fields = tuple(_frame_field(name, bodies, order) for name in names)
+    return Frame(time, step, positions[order], fields)
+
+
+def _frame_field(name: str, bodies: Sequence[Body], order: NDArray[np.int64]) -> Field:
+    if name == BODY_FIELD:
+        numbers = [np.full(body.count, float(number)) for number, body in enumerate(bodies)]
+        return Field(name, "1", "number of the body in the scene", np.concatenate(numbers)[order])
+    if name in FIELDS:
+        declared = FIELDS[name]
+        values = np.concatenate([declared.compute(body) for body in bodies])
+        return Field(name, declared.unit, declared.doc, values[order])
+    declarations = [body.law.state_declarations.get(name) for body in bodies]
+    found = next(declaration for declaration in declarations if declaration is not None)
+    parts = [
+        body.state(name) if declaration is not None else np.zeros(body.count)
+        for body, declaration in zip(bodies, declarations, strict=True)
+    ]
+    return Field(name, found.unit, found.doc, np.concatenate(parts)[order])

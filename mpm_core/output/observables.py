@@ -1,0 +1,61 @@
+"""What is measured of a run: runout, height, centre of mass."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grainlaw.mpm_core.body import Body
+
+# The middle share of the mass between the fronts: single points that roll ahead do not count.
+MASS_BETWEEN_FRONTS = 0.98
+
+
+@dataclass(frozen=True)
+class PileShape:
+    """Extent of the material [m].
+
+    front_left, front_right   beyond each lies 1 % of the mass
+    runout                    half of the distance between the fronts
+    height                    the level above which lies one cell's worth of material, above the floor of the domain
+    center_of_mass_height     of all points, above the floor of the domain
+    """
+
+    runout: float
+    front_left: float
+    front_right: float
+    height: float
+    center_of_mass_height: float
+
+
+def pile_shape(bodies: Sequence[Body], floor: float, cell_size: float) -> PileShape:
+    """Measure the shape of all bodies together."""
+    x, y = np.concatenate([body.places for body in bodies], axis=1)
+    mass = np.concatenate([np.full(body.count, body.point_mass) for body in bodies])
+    beyond = 0.5 * (1.0 - MASS_BETWEEN_FRONTS) * mass.sum()
+    front_left = _level(x, mass, beyond)
+    front_right = -_level(-x, mass, beyond)
+    cell_mass = mass.sum() / len(mass) * _points_per_cell(bodies, cell_size)
+    return PileShape(
+        runout=0.5 * (front_right - front_left),
+        front_left=front_left,
+        front_right=front_right,
+        height=-_level(-y, mass, cell_mass) - floor,
+        center_of_mass_height=float(np.average(y, weights=mass)) - floor,
+    )
+
+
+def _level(coordinate: NDArray[np.float64], mass: NDArray[np.float64], share: float) -> float:
+    """The coordinate below which lies `share` [kg/m] of the mass."""
+    count = min(len(mass), int(np.ceil(2.0 * share / mass.min())))
+    lowest = np.argpartition(coordinate, count - 1)[:count]
+    order = lowest[np.argsort(coordinate[lowest])]
+    # A share that is a whole number of points must not take one more by rounding.
+    position = int(np.searchsorted(np.cumsum(mass[order]), share * (1.0 - 1e-9)))
+    return float(coordinate[order[min(position, count - 1)]])
+
+
+def _points_per_cell(bodies: Sequence[Body], cell_size: float) -> float:
+    areas = [body.point_mass / body.initial_density for body in bodies]
+    return cell_size**2 / float(np.mean(areas))

@@ -1,0 +1,108 @@
+"""Keeping points sorted by the cell of their stencil: cache-friendly transfers, and stripes that threads can share.
+
+A stripe is some columns of stencils. Between two sorts no point may drift by more than one cell, so that a stripe
+reaches at most one column further on either side, plus its stencil; stripes of equal parity then share no node if each
+stripe is wider than a stencil. Stripes hold as many points as one another, and each parity has as many as two or four
+threads can share equally. They follow from where the points are alone, so that sums are the same for any number of
+threads.
+"""
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+from grainlaw.materials.compilation import named
+from grainlaw.mpm_core.kernels.shape_functions import Basis, first_node
+from grainlaw.mpm_core.kernels.sources import CORE_MARK
+from grainlaw.mpm_core.layout import X, Y
+from grainlaw.mpm_core.parallel.blocks import EQUAL_SHARES
+
+LONGEST_DRIFT = 0.9
+# Stripes come in multiples of the first, so that four threads have equal shares of each parity; else of the second.
+STRIPES_IN_TURN = (2 * EQUAL_SHARES, EQUAL_SHARES)
+
+
+def sort_by_stencil(
+    points: NDArray[np.float64], origin: tuple[float, float], cell_size: float, basis: Basis
+) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """The stable order of points by column and row of their stencil, and the first point of each stripe.
+
+    Orders are kept in 32 bits, as ids are: with many points they are what memory peaks with.
+    """
+    if points.shape[1] == 0:
+        return np.empty(0, np.int32), np.zeros(1, np.int64)
+    places = points[X : Y + 1]
+    corners = tuple(places.min(axis=1).tolist()), tuple(places.max(axis=1).tolist())
+    return _counting_sort(points, corners, origin, cell_size, basis.offset, basis.width + 1)
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def _stripe_starts(before, narrowest):  # type: ignore[no-untyped-def]
+    """The first point of each stripe, and the one behind its last, from the points before each column."""
+    columns = len(before) - 1
+    most = max(1, columns // narrowest)
+    for together in STRIPES_IN_TURN:
+        for count in range(most - most % together, 0, -together):
+            limits = _equal_parts(before, count)
+            if np.diff(limits).min() >= narrowest:
+                return before[limits]
+    return before[np.arange(most + 1) * columns // most]
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def _equal_parts(before, count):  # type: ignore[no-untyped-def]
+    """The columns at which parts begin: of each parity, the first k hold about k times the points of one."""
+    limits, held = np.zeros(count + 1, np.int64), np.zeros(2)
+    for part in range(count):
+        held_before = held[part % 2] - before[limits[part]]
+        target = before[-1] * (part // 2 + 1) / count - held_before
+        column = min(np.searchsorted(before, target), len(before) - 1)
+        is_beyond = column > limits[part] and target - before[column - 1] < before[column] - target
+        limits[part + 1] = column - 1 if is_beyond else column
+        held[part % 2] = held_before + before[limits[part + 1]]
+    limits[count] = len(before) - 1
+    return limits
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def _counting_sort(points, corners, origin, cell_size, offset, narrowest):  # type: ignore[no-untyped-def]
+    count = points.shape[1]
+    x, y = points[X], points[Y]
+    (low_x, low_y), (high_x, high_y) = corners
+    first_x, first_y = first_node(low_x, low_y, origin, cell_size, offset)
+    last_x, last_y = first_node(high_x, high_y, origin, cell_size, offset)
+    columns, rows = last_x - first_x + 1, last_y - first_y + 1
+    keys = np.empty(count, np.int32)
+    starts = np.zeros(columns * rows + 1, np.int64)
+    for p in range(count):
+        i, j = first_node(x[p], y[p], origin, cell_size, offset)
+        keys[p] = (i - first_x) * rows + j - first_y
+        starts[keys[p] + 1] += 1
+    for key in range(columns * rows):
+        starts[key + 1] += starts[key]
+    stripe_starts = _stripe_starts(starts[::rows].copy(), narrowest)
+    order = np.empty(count, np.int32)
+    for p in range(count):
+        order[starts[keys[p]]] = p
+        starts[keys[p]] += 1
+    return order, stripe_starts
+
+
+def reorder(storage: NDArray[np.float64], ids: NDArray[np.int32], first: int, order: NDArray[np.int32]) -> None:
+    """Bring points and their ids, from the first of them on, into an order that is counted from there."""
+    _reorder(storage, first, order)
+    _reorder(ids[np.newaxis], first, order)
+
+
+@njit(parallel=True, cache=True)
+@named(CORE_MARK)
+def _reorder(rows, first, order):  # type: ignore[no-untyped-def]
+    for number in prange(rows.shape[0]):
+        row, found = rows[number, first : first + len(order)], np.empty(len(order), rows.dtype)
+        for p in range(len(order)):
+            # unsigned, so that nothing is done for numbers that count from the end
+            found[p] = row[np.uint64(order[p])]
+        row[:] = found

@@ -1,0 +1,1 @@
+"""The scene: its model, files and errors, the shapes of bodies and their state at the start."""

@@ -1,0 +1,67 @@
+"""Reading a scene file: TOML, files that it names, values set on top of it; paths count from the file."""
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from grainlaw.materials import InputError
+
+
+def read_content(path: Path, overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of a TOML file with the parameter files that it names, and with values by dotted key set on top.
+
+    Raises InputError for a file that cannot be read and for a key that leads nowhere.
+    """
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: not valid TOML: {error}") from None
+    for key, value in overrides.items():
+        _set_dotted(content, key, value)
+    materials = content.get("material")
+    for table in materials.values() if isinstance(materials, dict) else ():
+        _take_in_parameter_file(table, path)
+    bodies = content.get("body")
+    for body in bodies if isinstance(bodies, list) else ():
+        _resolve_mesh_path(body, path.parent)
+    return content
+
+
+def _take_in_parameter_file(table: Any, scene: Path) -> None:
+    """Complete a table of material constants by the TOML file that its key `parameters` names, if it has one."""
+    name = table.pop("parameters", None) if isinstance(table, dict) else None
+    if name is None:
+        return
+    file = scene.parent / str(name)
+    try:
+        values = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{scene}: parameter file {file} cannot be read: {error}") from None
+    for key, value in values.items():
+        table.setdefault(key, value)
+
+
+def _set_dotted(content: dict[str, Any], key: str, value: Any) -> None:
+    *parents, last = key.split(".")
+    table: Any = content
+    for name in parents:
+        table = table[_entry(table, key, name)] if isinstance(table, list) else table.setdefault(name, {})
+        if not isinstance(table, dict | list):
+            raise InputError(f"--set {key}: '{name}' is a value, not a table")
+    table[_entry(table, key, last) if isinstance(table, list) else last] = value
+
+
+def _entry(entries: list[Any], key: str, name: str) -> int:
+    if not (name.isdecimal() and int(name) < len(entries)):
+        raise InputError(f"--set {key}: '{name}' is no entry of the list; allowed: 0 to {len(entries) - 1}")
+    return int(name)
+
+
+def _resolve_mesh_path(body: Any, folder: Path) -> None:
+    shape = body.get("shape") if isinstance(body, dict) else None
+    if isinstance(shape, dict) and shape.get("kind") == "mesh" and "file" in shape:
+        # Absolute, so that the copy of the scene in the run's folder finds it too.
+        shape["file"] = str((folder / str(shape["file"])).absolute())

@@ -1,0 +1,114 @@
+"""Building the bodies of a scene: points, mass, stress and the law's state in equilibrium with it."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grainlaw.materials import InputError, SymmetricTensor
+from grainlaw.materials.law import Law
+from grainlaw.mpm_core.body import POINTS_AT_ONCE, Body
+from grainlaw.mpm_core.kernels.positions import put_density, put_places
+from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, RESTS, SXX, SYY, SZZ, VX, VY, allocate
+from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
+from grainlaw.mpm_core.scene.shapes import lattice
+
+
+def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
+    """The bodies of a scene, with or without a column for the shear strain.
+
+    Raises InputError for empty, overlapping or misplaced ones.
+    """
+    bodies: list[Body] = []
+    positions = [_positions(scene, number, section) for number, section in enumerate(scene.body)]
+    _refuse_overlap(scene, positions)
+    first_id = 0
+    for number, section in enumerate(scene.body):
+        body = _build(scene, section, positions[number], f"body.{number}", first_id, keeps_shear_strain)
+        first_id += body.count
+        bodies.append(body)
+    return bodies
+
+
+def _positions(scene: Scene, number: int, section: BodySection) -> NDArray[np.float64]:
+    positions = lattice(section.shape, scene.grid.lower, scene.grid.cell_size, section.points_per_cell)
+    if len(positions) == 0:
+        raise InputError(f"body.{number}: the shape holds no point; it is smaller than a cell of the grid")
+    outside = ((positions < scene.grid.lower) | (positions > scene.grid.upper)).any(axis=1)
+    if outside.any():
+        x, y = positions[outside][0]
+        raise InputError(
+            f"body.{number}: {outside.sum()} of {len(positions)} points lie outside the domain "
+            f"{list(scene.grid.lower)} to {list(scene.grid.upper)}, the first at ({x:g}, {y:g})"
+        )
+    return positions
+
+
+def _refuse_overlap(scene: Scene, positions: list[NDArray[np.float64]]) -> None:
+    for second, section in enumerate(scene.body):
+        for first in range(second):
+            # Both ways: a small body may lie between the points of a large one.
+            in_second = positions[first][section.shape.contains(positions[first])]
+            in_first = positions[second][scene.body[first].shape.contains(positions[second])]
+            if len(in_second) or len(in_first):
+                x, y = (*in_second, *in_first)[0]
+                raise InputError(f"body.{first} and body.{second} overlap, for instance at ({x:g}, {y:g})")
+
+
+def _build(
+    scene: Scene,
+    section: BodySection,
+    positions: NDArray[np.float64],
+    name: str,
+    first_id: int,
+    keeps_shear_strain: bool,
+) -> Body:
+    law = scene.law(section.material)
+    parameters = scene.parameters(section.material)
+    rests = len(RESTS) if scene.precision == "single" else 0
+    columns = FIRST_STATE + len(law.state._fields) + keeps_shear_strain + rests
+    storage = allocate(columns, len(positions), scene.precision)
+    points = storage[:, : len(positions)]
+    put_places(points, positions.T)
+    points[VX], points[VY] = section.velocity
+    put_density(points, section.density)
+    spacing = scene.grid.cell_size / section.points_per_cell**0.5
+    weight = -section.density * scene.gravity[1]
+    points[SXX], points[SYY], points[SZZ] = _initial_stress(section.initial_stress, positions, spacing, weight)
+    _initialise_state(law, parameters, points)
+    return Body(name, law, parameters, storage, len(positions), section.density * spacing**2, first_id)
+
+
+def _initial_stress(
+    section: InitialStressSection, positions: NDArray[np.float64], spacing: float, weight: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Normal stresses [Pa] along x, y and z; `weight` is rho g downwards [N/m3]."""
+    if section.kind == "uniform":
+        pressure = np.full(len(positions), section.pressure)
+        return -pressure, -pressure, -pressure
+    if section.kind == "geostatic":
+        vertical = -weight * _depth(positions, spacing)
+        horizontal = section.horizontal_ratio * vertical
+        return horizontal, vertical, section.out_of_plane_ratio * (horizontal + vertical)
+    nothing = np.zeros(len(positions))
+    return nothing, nothing, nothing
+
+
+def _depth(positions: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
+    """Depth of each lattice point below the top of its own column of points [m]."""
+    column = np.round((positions[:, 0] - positions[:, 0].min()) / spacing).astype(int)
+    top = np.full(column.max() + 1, -np.inf)
+    np.maximum.at(top, column, positions[:, 1])
+    return np.asarray(top[column] + 0.5 * spacing - positions[:, 1])
+
+
+def _initialise_state(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64]) -> None:
+    """Fill the columns of the law's state, one call for each distinct initial stress of some points."""
+    states = points[FIRST_STATE : FIRST_STATE + len(law.state._fields)]
+    for start in range(0, points.shape[1], POINTS_AT_ONCE):
+        block = slice(start, start + POINTS_AT_ONCE)
+        stresses = points[[SXX, SYY, SZZ, DENSITY], block].T
+        distinct, which = np.unique(stresses, axis=0, return_inverse=True)
+        found = [
+            law.initial_state(SymmetricTensor(xx, yy, zz, 0.0, 0.0, 0.0), density, parameters)
+            for xx, yy, zz, density in distinct.tolist()
+        ]
+        states[:, block] = np.array(found)[which].T.reshape(states[:, block].shape)

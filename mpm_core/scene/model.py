@@ -1,0 +1,290 @@
+"""The scene: everything that a run needs, as a validated model that reads and writes TOML."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import tomli_w
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, field_validator, model_validator
+
+from grainlaw.materials import InputError, get_material
+from grainlaw.materials.errors import nearest_name
+from grainlaw.materials.law import Law
+from grainlaw.mpm_core.scene.errors import described
+from grainlaw.mpm_core.scene.file import read_content
+from grainlaw.mpm_core.scene.presets import with_settings_for_accuracy
+from grainlaw.mpm_core.scene.shapes import AnyShape, Corner
+
+# The widest stencil: over fewer cells it would reach the same node twice.
+FEWEST_PERIODIC_CELLS = 4
+
+
+class Section(BaseModel):
+    """A table of a scene file; unknown keys are refused."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
+
+
+class GridSection(Section):
+    """The background grid."""
+
+    cell_size: float = Field(gt=0, description="edge of a square cell [m]; may be left to `accuracy`")
+    lower: Corner = Field(default=(0.0, 0.0), description="lower left corner of the domain [m]")
+    upper: Corner = Field(description="upper right corner of the domain [m]; a whole number of cells from `lower`")
+
+    @property
+    def cells(self) -> tuple[int, int]:
+        """Number of cells along x and y."""
+        counts = [round((self.upper[axis] - self.lower[axis]) / self.cell_size) for axis in (0, 1)]
+        return counts[0], counts[1]
+
+    @model_validator(mode="after")
+    def _whole_cells(self) -> "GridSection":
+        for axis, name in enumerate("xy"):
+            length = self.upper[axis] - self.lower[axis]
+            whole = round(length / self.cell_size) * self.cell_size
+            if whole <= 0 or abs(whole - length) > 1e-6 * self.cell_size:
+                raise ValueError(
+                    f"the domain is {length:g} m along {name}, not a whole number of cells of {self.cell_size:g} m; "
+                    f"nearest: {max(whole, self.cell_size):g} m"
+                )
+        return self
+
+
+class WallSection(Section):
+    """A wall, or a side joined to its opposite."""
+
+    kind: Literal["free_slip", "no_slip", "friction", "periodic"] = Field(
+        description="free_slip and no_slip hold the material at the wall; friction lets it leave and slide"
+    )
+    coefficient: float = Field(default=0.0, ge=0, description="Coulomb friction coefficient of a friction wall [1]")
+    velocity: float = Field(
+        default=0.0, description="speed at which a friction or no_slip wall slides along itself, towards +x or +y [m/s]"
+    )
+
+    @model_validator(mode="after")
+    def _coefficient_belongs_to_friction(self) -> "WallSection":
+        if self.kind == "friction" and "coefficient" not in self.model_fields_set:
+            raise ValueError("kind = 'friction' needs a coefficient")
+        if self.kind != "friction" and self.coefficient > 0:
+            raise ValueError("a coefficient belongs to kind = 'friction', and to no other")
+        return self
+
+    @model_validator(mode="after")
+    def _velocity_belongs_to_a_wall_that_grips(self) -> "WallSection":
+        if self.velocity and self.kind not in ("friction", "no_slip"):
+            raise ValueError("a velocity belongs to kind = 'friction' or 'no_slip', which can pass it on")
+        return self
+
+
+class BoundarySection(Section):
+    """What happens at the four sides of the domain."""
+
+    left: WallSection = Field(default=WallSection(kind="free_slip"), description="side x = lower")
+    right: WallSection = Field(default=WallSection(kind="free_slip"), description="side x = upper")
+    bottom: WallSection = Field(default=WallSection(kind="free_slip"), description="side y = lower")
+    top: WallSection = Field(default=WallSection(kind="free_slip"), description="side y = upper")
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _short_form(cls, value: Any) -> Any:
+        return {"kind": value} if isinstance(value, str) else value
+
+    @model_validator(mode="after")
+    def _periodic_in_pairs(self) -> "BoundarySection":
+        for first, second in (("left", "right"), ("bottom", "top")):
+            kinds = {getattr(self, first).kind, getattr(self, second).kind}
+            if "periodic" in kinds and len(kinds) > 1:
+                raise ValueError(f"periodic sides come in pairs: set both {first} and {second}")
+        return self
+
+
+class TimeSection(Section):
+    """Duration and time step."""
+
+    end: float = Field(gt=0, description="simulated time [s]")
+    safety: float = Field(
+        default=0.4, gt=0, le=1, description="fraction of the stable step that is taken; 1 is the limit [1]"
+    )
+    step: float | None = Field(
+        default=None, gt=0, description="fixed step [s]; refused where it is above the stable one; default: adaptive"
+    )
+    smallest_step: float | None = Field(
+        default=None,
+        gt=0,
+        description="the run stops if it would have to step below this [s]; default: 1e-4 of the first step",
+    )
+
+
+class TransferSection(Section):
+    """Shape functions and the transfer between points and grid."""
+
+    basis: Literal["linear", "quadratic", "cubic"] = Field(default="quadratic", description="B-spline shape functions")
+    scheme: Literal["affine_flip", "apic"] = Field(
+        default="affine_flip",
+        description="affine_flip keeps velocities below the grid's resolution for `time_constant`; apic drops them",
+    )
+    time_constant: float = Field(
+        default=0.01,
+        gt=0,
+        description="decay time of velocities below the grid's resolution (affine_flip only), and of the opening of "
+        "points without stress [s]",
+    )
+    spreading: bool = Field(
+        default=False,
+        description="points of loose grains also move down the gradient of crowding; for flows of long duration, where "
+        "points crowd",
+    )
+
+
+class SleepSection(Section):
+    """Rest: where nothing moves, nothing is computed (`grainlaw.mpm_core.stepping.sleeping`)."""
+
+    speed: float | None = Field(
+        default=None,
+        gt=0,
+        description="points that moved slower than this over `window`, with all around them, sleep until something "
+        "moves them; a creeping point stays behind by this times the time asleep [m/s]; default: nothing sleeps",
+    )
+    window: float = Field(default=0.05, gt=0, description="how long a point has to rest before it sleeps [s]")
+    start: float = Field(
+        default=0.0, ge=0, description="when the first window begins; for flows that begin at rest [s]"
+    )
+
+
+class InitialStressSection(Section):
+    """The stress of a body at the start."""
+
+    kind: Literal["none", "uniform", "geostatic"] = Field(
+        default="none", description="no stress, a uniform pressure, or the weight of the material above"
+    )
+    pressure: float = Field(default=0.0, ge=0, description="pressure of kind = 'uniform' [Pa]")
+    horizontal_ratio: float = Field(default=1.0, ge=0, description="sigma_xx/sigma_yy of kind = 'geostatic' [1]")
+    out_of_plane_ratio: float = Field(
+        default=0.5,
+        ge=0,
+        description="sigma_zz/(sigma_xx + sigma_yy) of kind = 'geostatic'; 0.5 with ratio 1: isotropic [1]",
+    )
+
+
+class BodySection(Section):
+    """A body: shape, material, initial state."""
+
+    material: str = Field(description="name of a [material.NAME] table")
+    shape: AnyShape = Field(description="rectangle, disc, polygon or mesh")
+    density: float = Field(gt=0, description="initial bulk density [kg/m3]")
+    points_per_cell: Literal[1, 4, 9, 16, 25, 36] = Field(
+        default=4, description="material points per cell, a square number; may be left to `accuracy`"
+    )
+    velocity: Corner = Field(default=(0.0, 0.0), description="initial velocity [m/s]")
+    initial_stress: InitialStressSection = Field(default=InitialStressSection(), description="stress at the start")
+
+
+class OutputSection(Section):
+    """What a run writes."""
+
+    interval: float | None = Field(default=None, gt=0, description="time between frames [s]; default: end/30")
+    history_interval: float | None = Field(
+        default=None, gt=0, description="time between history rows [s]; default: end/300"
+    )
+    fields: list[str] | None = Field(
+        default=None,
+        description="fields of each frame; default: velocity, pressure, deviatoric_stress, shear_strain, "
+        "solid_fraction where the law knows the grain density, and the state variables that the law marks for output",
+    )
+    vtu: bool = Field(default=True, description="write points_NNNNNN.vtu and run.pvd")
+    vtkhdf: bool = Field(default=False, description="write all frames to one run.vtkhdf")
+    pictures: bool = Field(default=True, description="draw PNG pictures at the end (needs vtu)")
+
+
+class Scene(Section):
+    """A complete scene."""
+
+    title: str = Field(default="", description="one line for reports")
+    accuracy: Literal["10%", "3%", "1%"] | None = Field(
+        default=None,
+        description="sets grid.cell_size, time.safety, body.points_per_cell, transfer.time_constant and precision "
+        "where the scene does not, to what kept runout, height and centre of mass of column collapses within this of "
+        "finer grids; refused where that was not reached, and for bodies few grains wide, or more slender than those "
+        "with which it was",
+    )
+    precision: Literal["double", "single"] = Field(
+        default="double",
+        description="of nodes and points, but for places and densities, and of the arithmetic of laws that hold in it",
+    )
+    gravity: Corner = Field(default=(0.0, -9.81), description="gravity vector [m/s2]")
+    grid: GridSection
+    time: TimeSection
+    boundary: BoundarySection = Field(default=BoundarySection())
+    transfer: TransferSection = Field(default=TransferSection())
+    sleep: SleepSection = Field(default=SleepSection())
+    material: dict[str, dict[str, Any]] = Field(
+        min_length=1, description="[material.NAME]: the law's parameters, and `law` if NAME is not the law's own name"
+    )
+    body: Annotated[list[BodySection], Field(min_length=1)]
+    output: OutputSection = Field(default=OutputSection())
+    _source: str = PrivateAttr(default="scene")
+
+    @property
+    def source(self) -> str:
+        """The file that the scene was read from, for messages."""
+        return self._source
+
+    @model_validator(mode="before")
+    @classmethod
+    def _settings_for_accuracy(cls, content: Any) -> Any:
+        return with_settings_for_accuracy(content)
+
+    @model_validator(mode="after")
+    def _periodic_axes_are_wide_enough(self) -> "Scene":
+        for cells, side in zip(self.grid.cells, ("left", "bottom"), strict=True):
+            if getattr(self.boundary, side).kind == "periodic" and cells < FEWEST_PERIODIC_CELLS:
+                raise ValueError(
+                    f"boundary.{side} is periodic over {cells} cells of the grid; "
+                    f"allowed: {FEWEST_PERIODIC_CELLS} or more"
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _materials_exist(self) -> "Scene":
+        for number, body in enumerate(self.body):
+            if body.material not in self.material:
+                raise ValueError(
+                    f"body.{number}.material = '{body.material}': {nearest_name(body.material, self.material)}"
+                )
+        return self
+
+    def law(self, material: str) -> Law:
+        """The law of a [material.NAME] table. Raises InputError for an unknown one."""
+        try:
+            return get_material(str(self.material[material].get("law", material)))
+        except InputError as error:
+            raise InputError(f"material.{material}: {error}") from error
+
+    def parameters(self, material: str) -> Any:
+        """The parameters of a [material.NAME] table as the law's NamedTuple. Raises InputError for bad values."""
+        values = {name: value for name, value in self.material[material].items() if name != "law"}
+        return self.law(material).checked(values, f"material.{material}")
+
+    @classmethod
+    def from_dict(cls, content: dict[str, Any], source: str = "scene") -> "Scene":
+        """Validate a scene given as nested dictionaries. Raises InputError in one line."""
+        try:
+            scene = cls.model_validate(content)
+        except ValidationError as error:
+            raise InputError(f"{source}: {described(error, cls, content)}") from None
+        scene._source = source
+        for material in scene.material:
+            try:
+                scene.parameters(material)
+            except InputError as error:
+                raise InputError(f"{source}: {error}") from None
+        return scene
+
+    @classmethod
+    def load(cls, path: Path, overrides: dict[str, Any] | None = None) -> "Scene":
+        """Read a TOML scene, with values by dotted key set on top. Raises InputError in one line."""
+        return cls.from_dict(read_content(path, overrides or {}), str(path))
+
+    def to_toml(self) -> str:
+        """The scene with every default written out."""
+        return tomli_w.dumps(self.model_dump(mode="json", exclude_none=True))

@@ -1,0 +1,141 @@
+"""What a scene will use and cost, before it is run."""
+
+import math
+import resource
+import statistics
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from grainlaw.mpm_core.output.checkpoint import Clock
+from grainlaw.mpm_core.output.recorder import FRAMES_BY_DEFAULT, HISTORY_ROWS_BY_DEFAULT, Recorder
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.stepping.rehearsal import FIRST_STEPS, expected_speed, rehearsals
+from grainlaw.mpm_core.stepping.run import built_simulation
+
+TIMED_STEPS = 40
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a run of a scene takes.
+
+    bytes_per_point    of the arrays that hold the points
+    memory_bytes       greatest memory of this process while it built the scene and made the first steps, all included
+    step, stable_step  at the start [s]
+    steps              with the signal speeds of rehearsals on coarse grids
+    wall_time          of all steps and all output [s], without compilation
+    savings            what this scene need not do or keep
+    """
+
+    laws: list[str]
+    points: int
+    cells: int
+    nodes_in_reach: int
+    bytes_per_point: float
+    memory_bytes: int
+    step: float
+    stable_step: float
+    steps: int
+    seconds_per_step: float
+    output_time: float
+    wall_time: float
+    frames: int
+    fields: list[str]
+    savings: list[str]
+    threads: int
+
+
+def plan(scene: Scene, threads: int = 1) -> Plan:
+    """Build the scene, time some steps, rehearse it on coarse grids. Raises InputError for one that cannot be run."""
+    started = time.perf_counter()
+    simulation = built_simulation(scene, threads)
+    build_time = time.perf_counter() - started - simulation.build_time
+    stable = simulation.stable_step()
+    step = scene.time.step or scene.time.safety * stable
+    points = sum(body.count for body in simulation.bodies)
+    interval = scene.output.interval or scene.time.end / FRAMES_BY_DEFAULT
+    stops = math.ceil(scene.time.end / interval - 1e-9)
+    output_time = _output_time(simulation, stops + 1)
+    seconds = _seconds_per_step(simulation, min(step, stable))
+    memory_bytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    played = rehearsals(scene, points, threads)
+    seconds += played[-1].growth * points
+    steps = _steps(scene, expected_speed(played, scene.grid.cell_size), stops)
+    return Plan(
+        laws=list(dict.fromkeys(body.law.name for body in simulation.bodies)),
+        points=points,
+        cells=scene.grid.cells[0] * scene.grid.cells[1],
+        nodes_in_reach=simulation.reach.nodes,
+        bytes_per_point=sum(body.points.nbytes + body.ids.nbytes for body in simulation.bodies) / points,
+        memory_bytes=memory_bytes,
+        step=step,
+        stable_step=stable,
+        steps=steps,
+        seconds_per_step=seconds,
+        output_time=output_time,
+        wall_time=build_time + steps * seconds + output_time,
+        frames=stops + 1 if scene.output.vtu or scene.output.vtkhdf else 0,
+        fields=simulation.fields,
+        savings=_savings(simulation),
+        threads=threads,
+    )
+
+
+def _steps(scene: Scene, signal_speed: float, stops: int) -> int:
+    """Number of steps; on the way to each of the stops, half a step is lost on average."""
+    if scene.time.step is not None:
+        return math.ceil(scene.time.end / scene.time.step)
+    steps = scene.time.end * signal_speed / (scene.time.safety * scene.grid.cell_size)
+    return round(steps + 0.5 * stops)
+
+
+def _savings(simulation: Simulation) -> list[str]:
+    nodes = simulation.grid.shape[0] * simulation.grid.shape[1]
+    found = [f"grid: {1.0 - simulation.reach.nodes / nodes:.0%} of the nodes are out of reach at the start"]
+    if simulation.scene.precision == "single":
+        found += [f"single precision: {line}" for line in _in_single(simulation)]
+    if "shear_strain" not in simulation.fields:
+        found.append("shear strain: not accumulated, as no frame holds it")
+    if simulation.scene.sleep.speed is not None:
+        found.append(f"sleep: points slower than {simulation.scene.sleep.speed:g} m/s, not counted in the wall time")
+    return found
+
+
+def _in_single(simulation: Simulation) -> list[str]:
+    doubles = sorted({body.law.name for body in simulation.bodies if not body.law.holds_in_single})
+    laws = [f"{', '.join(doubles)} computed in double, as it does not hold in single"] if doubles else []
+    return ["half of the memory for points and for nodes in reach", *laws]
+
+
+def _seconds_per_step(simulation: Simulation, dt: float) -> float:
+    """Median of some steps, after those that compile or load the kernels."""
+    durations = []
+    for _ in range(FIRST_STEPS + TIMED_STEPS):
+        started = time.perf_counter()
+        simulation.step(dt)
+        durations.append(time.perf_counter() - started)
+    return statistics.median(durations[FIRST_STEPS:])
+
+
+def _output_time(simulation: Simulation, frames: int) -> float:
+    """Wall time [s] of all frames with their checkpoints, and of all rows of the history."""
+    output, end = simulation.scene.output, simulation.scene.time.end
+    rows = end / (output.history_interval or end / HISTORY_ROWS_BY_DEFAULT)
+    with TemporaryDirectory() as folder:
+        recorder = Recorder(Path(folder), simulation, Clock())
+        durations = [_duration_of_record(recorder) for _ in range(2)]
+        recorder.close()
+    started = time.perf_counter()
+    recorder.shape()
+    # The first record imports libraries, as the first one of the run does.
+    return durations[0] + frames * durations[1] + rows * (time.perf_counter() - started)
+
+
+def _duration_of_record(recorder: Recorder) -> float:
+    recorder.clock = Clock()
+    started = time.perf_counter()
+    recorder.record(0.0, 0.0)
+    return time.perf_counter() - started

@@ -1,0 +1,146 @@
+"""The time loop: from a scene to a run's folder."""
+
+import math
+import resource
+import time
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+
+from grainlaw.materials import InputError, SimulationError
+from grainlaw.mpm_core.output.bounded_points import limited
+from grainlaw.mpm_core.output.checkpoint import CHECKPOINT_NAME, Clock, read_checkpoint
+from grainlaw.mpm_core.output.recorder import Recorder, prepare_folder, rewind
+from grainlaw.mpm_core.output.summary import FinalState, RunSummary, write_summary
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.simulation import Simulation
+
+Progress = Callable[[Simulation, float], None]
+
+
+def run(
+    scene: Scene,
+    folder: Path,
+    *,
+    threads: int = 1,
+    resume: bool = False,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> RunSummary:
+    """Run a scene and write its folder; `progress(simulation, dt)` is called after each step.
+
+    Raises InputError for what cannot be run or would overwrite a run, and SimulationError, naming the time, the point
+    and the last checkpoint, where the computation goes wrong.
+    """
+    started = time.perf_counter()
+    simulation = built_simulation(scene, threads)
+    _refuse_impossible_steps(simulation)
+    prepare_folder(folder, scene.to_toml(), resume=resume, overwrite=overwrite)
+    clock = Clock()
+    if resume:
+        clock = read_checkpoint(folder, simulation)
+        rewind(folder, simulation)
+    started -= clock.wall_time
+    recorder = Recorder(folder, simulation, clock)
+    try:
+        first_steps = _advance(simulation, recorder, started, progress)
+    except SimulationError as error:
+        raise SimulationError(f"{error}; last checkpoint: {folder / CHECKPOINT_NAME}") from error
+    finally:
+        recorder.close()
+    compile_time = simulation.build_time + max(0.0, first_steps)
+    summary = _summary(simulation, recorder, time.perf_counter() - started, compile_time)
+    write_summary(folder, summary)
+    if scene.output.pictures and scene.output.vtu:
+        from grainlaw.mpm_core.output.pictures import write_run_pictures
+
+        write_run_pictures(folder)
+    return summary
+
+
+def built_simulation(scene: Scene, threads: int) -> Simulation:
+    """The simulation of a scene. Raises InputError, naming the scene's file, for a scene that cannot be built."""
+    try:
+        return Simulation(scene, threads)
+    except InputError as error:
+        raise InputError(f"{scene.source}: {error}") from error
+    except MemoryError as error:
+        across, up = scene.grid.cells
+        raise InputError(f"{scene.source}: grid: {across} x {up} cells do not fit into memory") from error
+
+
+def _advance(simulation: Simulation, recorder: Recorder, started: float, progress: Progress | None) -> float:
+    """Step to the end. Returns the wall time that the first step took longer than the second one [s]."""
+    durations: list[float] = []
+    if simulation.steps == 0:
+        recorder.record(0.0, time.perf_counter() - started)
+    while simulation.time < simulation.scene.time.end:
+        dt, arrival = next_step(simulation, recorder.next_frame_time())
+        before = time.perf_counter()
+        simulation.step(dt)
+        if arrival is not None:
+            simulation.time = arrival
+        now = time.perf_counter()
+        if len(durations) < 2:
+            durations.append(now - before)
+        recorder.record(dt, now - started)
+        if progress is not None:
+            progress(simulation, dt)
+    return durations[0] - durations[1] if len(durations) == 2 else 0.0
+
+
+def next_step(simulation: Simulation, target: float) -> tuple[float, float | None]:
+    """The next time step [s], and the time of arrival if it ends on the target.
+
+    The step is the adaptive one, or the fixed one, shortened so that a whole number of equal steps leads to the target.
+    Raises SimulationError below the smallest step, or if the fixed step has become unstable.
+    """
+    settings, stable = simulation.scene.time, simulation.stable_step()
+    largest = settings.step or simulation.adaptive_step()
+    if largest > stable:
+        where = f"t = {simulation.time:.6g} s, step {simulation.steps}"
+        raise SimulationError(f"{where}: the fixed step {largest:.4g} s is above the stable one, now {stable:.4g} s")
+    if largest < simulation.smallest_step:
+        simulation.fail_too_small(largest)
+    remaining = target - simulation.time
+    count = max(1, math.ceil(remaining / largest * (1.0 - 1e-12)))
+    return remaining / count, target if count == 1 else None
+
+
+def _refuse_impossible_steps(simulation: Simulation) -> None:
+    step, stable = simulation.scene.time.step, simulation.stable_step()
+    first = step or simulation.adaptive_step()
+    if simulation.smallest_step > first:
+        where = f"{simulation.scene.source}: time.smallest_step = {simulation.smallest_step:g} s"
+        raise InputError(f"{where} is above the first step, {first:.6g} s; allowed: less")
+    if step is not None and step > stable:
+        where = f"{simulation.scene.source}: time.step = {step:g} s"
+        raise InputError(f"{where} is above the stable step at the start, {stable:.6g} s")
+
+
+def _summary(simulation: Simulation, recorder: Recorder, wall_time: float, compile_time: float) -> RunSummary:
+    scene, shape, ledger = simulation.scene, recorder.shape(), simulation.ledger
+    points = sum(body.count for body in simulation.bodies)
+    released = ledger.initial_kinetic + max(0.0, -ledger.potential)
+    return RunSummary(
+        scene=scene.title,
+        material=", ".join(dict.fromkeys(body.law.name for body in simulation.bodies)),
+        points=points,
+        cells=scene.grid.cells[0] * scene.grid.cells[1],
+        steps=simulation.steps,
+        simulated_time=simulation.time,
+        wall_time=wall_time,
+        compile_time=compile_time,
+        point_steps_per_second=points * simulation.steps / max(wall_time - compile_time, 1e-9),
+        peak_memory_bytes=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+        final=FinalState(
+            runout=shape.runout,
+            height=shape.height,
+            center_of_mass_height=shape.center_of_mass_height,
+            kinetic_energy=ledger.kinetic,
+        ),
+        energy_balance_error=abs(ledger.numerical_dissipation) / released if released > 0.0 else 0.0,
+        limited=limited(simulation),
+        threads=simulation.threads,
+        version=version("grainlaw"),
+    )

@@ -1,0 +1,124 @@
+"""What bounds a step: waves on the grid, stiffness that contact brings, and the strain of a step.
+
+Stability. Stress is updated with the new velocities, so an oscillation at omega is stable while omega dt <= 2. Of all
+arrangements of points, none is stiffer than a single one: the Rayleigh quotient of the grid, a sum over points in
+numerator and denominator, cannot exceed that of its worst term. The gradient of one point, over the second moment
+D = h^2/4 of quadratic splines, gives omega^2 = C/(rho D) with the largest stiffness C = e:d(sigma)/d(eps):e against
+strains e in the plane, so that
+
+    dt <= 2/omega = h/sqrt(C/rho) for quadratic splines.
+
+C exceeds rho c^2, which waves feel: against in-plane dilation it is 2 K + 2/3 G, for a fluid twice rho c^2. The ratio
+is taken from the law once. Cubic splines (D = h^2/3) have room to spare.
+
+Contact. A law whose stiffness comes with pressure has none where the point is open. What it will have when a step has
+closed the gap and compressed it by `LARGEST_STRAIN` counts from the start.
+
+Strain. An explicit step takes the velocity gradient of its start for the whole step, which is wrong by half of the
+strain of the step. Adaptive steps strain no point by more than `LARGEST_STRAIN` in volume.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grainlaw.materials.law import Law
+from grainlaw.materials.tensor import SymmetricTensor, contraction, isotropic, scaled, trace
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.layout import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ
+
+# Of volume, in one adaptive step.
+LARGEST_STRAIN = 0.02
+# The smallest step, over the first one, unless the scene says otherwise.
+SMALLEST_SHARE = 1e-4
+
+_PROBE_STRAIN, _PROBE_DURATION = 1e-6, 1e-3
+_DILATION = SymmetricTensor(math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0, 0.0, 0.0)
+_SHEAR = SymmetricTensor(math.sqrt(0.5), -math.sqrt(0.5), 0.0, 0.0, 0.0, 0.0)
+# No isotropic elasticity is stiffer in the plane than a fluid, in terms of its rho c^2.
+_LARGEST_STIFFNESS_RATIO = 2.0
+
+
+class _Probe(NamedTuple):
+    """A point of a law: stress [Pa], density [kg/m3], state."""
+
+    stress: SymmetricTensor
+    density: float
+    state: Any
+
+
+class SignalBounds(NamedTuple):
+    """What a body's waves are to the grid.
+
+    wave_factor    by how much the grid is stiffer than a plane wave, in speed: sqrt(C/(rho c^2))
+    contact_speed  sound speed after a point has closed [m/s], 0 where an open point has it too
+    """
+
+    wave_factor: float
+    contact_speed: float
+
+    def speed(self, reported: float, fastest_point: float) -> float:
+        """The signal speed [m/s] that bounds the step, from the largest c + |v| and the largest |v| of the points."""
+        return self.wave_factor * max(reported, fastest_point + self.contact_speed)
+
+
+def signal_bounds(law: Law, parameters: Any, density: float) -> SignalBounds:
+    """The bounds of a law for a bulk density [kg/m3], from its functions."""
+    start = _Probe(isotropic(0.0), density, law.initial_state(isotropic(0.0), density, parameters))
+    closed = _moved(law, parameters, start, isotropic(-LARGEST_STRAIN / 3.0))
+    open_speed, closed_speed = law.sound_speed(*start, parameters), law.sound_speed(*closed, parameters)
+    contact_speed = closed_speed if closed_speed > open_speed else 0.0
+    modulus = closed.density * closed_speed * closed_speed
+    if not modulus > 0.0:
+        return SignalBounds(math.sqrt(_LARGEST_STIFFNESS_RATIO), contact_speed)
+    largest = max(
+        _stiffness(law, parameters, closed, scaled(mode, sign)) for mode in (_DILATION, _SHEAR) for sign in (1.0, -1.0)
+    )
+    ratio = min(max(largest / modulus, 1.0), _LARGEST_STIFFNESS_RATIO)
+    return SignalBounds(math.sqrt(ratio), contact_speed)
+
+
+def _moved(law: Law, parameters: Any, start: _Probe, strain: SymmetricTensor) -> _Probe:
+    density = start.density * math.exp(-trace(strain))
+    rate = scaled(strain, 1.0 / _PROBE_DURATION)
+    stress, state = law.update(start.stress, rate, density, start.state, parameters, _PROBE_DURATION)
+    return _Probe(stress, density, state)
+
+
+def _stiffness(law: Law, parameters: Any, start: _Probe, direction: SymmetricTensor) -> float:
+    """Stiffness against a small strain in a direction of unit norm [Pa]."""
+    still = _moved(law, parameters, start, isotropic(0.0)).stress
+    end = _moved(law, parameters, start, scaled(direction, _PROBE_STRAIN)).stress
+    return (contraction(end, direction) - contraction(still, direction)) / _PROBE_STRAIN
+
+
+def what_sets_the_step(body: Body, reason: Callable[[Body], NDArray[np.float64]]) -> tuple[int, str]:
+    """The point where a reason for small steps is strongest, and what it contributes to the bounds, in words."""
+    point = int(np.argmax(reason(body)))
+    sound, speed, rate = sound_speeds(body)[point], np.hypot(*body.velocities)[point], strain_rates(body)[point]
+    return point, f"sound speed {sound:.3g} m/s, speed {speed:.3g} m/s, volumetric strain rate {rate:.3g} 1/s"
+
+
+def strain_rates(body: Body) -> NDArray[np.float64]:
+    """Absolute rate of volumetric strain of each point [1/s]."""
+    rates: NDArray[np.float64] = np.abs(body.points[LXX] + body.points[LYY])
+    return rates
+
+
+def signal_speeds(body: Body) -> NDArray[np.float64]:
+    """Sound speed and speed of each point [m/s], in plain Python."""
+    speeds: NDArray[np.float64] = sound_speeds(body) + np.hypot(*body.velocities)
+    return speeds
+
+
+def sound_speeds(body: Body) -> NDArray[np.float64]:
+    """Sound speed of each point [m/s], in plain Python."""
+    rows = np.vstack([body.points[[SXX, SYY, SZZ, SXY, DENSITY]], body.states])
+    found = np.empty(body.count)
+    for point, (xx, yy, zz, xy, density, *state) in enumerate(rows.T.tolist()):
+        stress = SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0)
+        found[point] = body.law.sound_speed(stress, density, body.law.state(*state), body.parameters)
+    return found
