@@ -3,7 +3,6 @@
 from grainlaw.mpm_core.layout import AXX, AYY, LXX, LYY, VX, VY, X, Y
 from grainlaw.mpm_core.parallel.threads import use_threads
 from grainlaw.mpm_core.simulation import Simulation
-from grainlaw.mpm_core.stepping.run import next_step
 from grainlaw.validation.collapses import collapse
 
 # The rate [1/s] at which the column spreads and sinks: about the mean of a collapse that takes half a second.
@@ -42,14 +41,5 @@ def make_steps(simulation: Simulation, count: int) -> None:
     """Take steps on the simulation's own number of threads."""
     use_threads(simulation.threads)
     for _ in range(count):
-        dt, _ = next_step(simulation, simulation.time + AHEAD)
+        dt, _ = simulation.next_step(simulation.time + AHEAD)
         simulation.step(dt)
-
-
-def advance_to(simulation: Simulation, target: float) -> None:
-    """Step to a time [s]."""
-    use_threads(simulation.threads)
-    while simulation.time < target:
-        dt, arrival = next_step(simulation, target)
-        simulation.step(dt)
-        simulation.time = simulation.time if arrival is None else arrival

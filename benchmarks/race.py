@@ -6,7 +6,6 @@ from itertools import product
 
 import numpy as np
 
-from benchmarks.columns import advance_to
 from benchmarks.timing import Duration, Spread, spread, timed
 from benchmarks.yardstick import Yardstick
 from grainlaw.materials.precision import PRECISIONS
@@ -72,7 +71,7 @@ def _library(material: str, cell_size: float, precision: str, threads: int) -> C
     simulation = collapse(material, cell_size, {"precision": precision})
     simulation.threads = threads
     name = f"library, {precision}, {threads} thread(s)"
-    return Contestant(name, simulation, lambda target: advance_to(simulation, target))
+    return Contestant(name, simulation, simulation.advance_to)
 
 
 def _yardstick(material: str, cell_size: float) -> Contestant:

@@ -14,7 +14,13 @@ from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.kernels.g2p import REPORTS as TRANSFER_REPORTS
 from grainlaw.mpm_core.kernels.g2p import make_grid_to_points
 from grainlaw.mpm_core.kernels.p2g import make_points_to_grid
-from grainlaw.mpm_core.kernels.positions import coordinate_of, density_of_first, places_of, put_coordinate
+from grainlaw.mpm_core.kernels.positions import (
+    coordinate_of,
+    density_of_first,
+    positions_of,
+    put_coordinate,
+    put_positions,
+)
 from grainlaw.mpm_core.kernels.shape_functions import Basis
 from grainlaw.mpm_core.kernels.simd.registers import MOST_AT_ONCE
 from grainlaw.mpm_core.kernels.stress_update import MAX_SIGNAL_SPEED, make_stress_pass
@@ -28,7 +34,11 @@ POINTS_AT_ONCE = 2**18
 
 
 class Body:
-    """Points as `points`, shape (columns, n); `ids` gives each point's number in the order of generation.
+    """The material points of one body, their law and its parameters, in an order that changes as they move.
+
+    `positions`, `velocity`, `stress`, `density` and the other arrays of one quantity are views of `points`, shape
+    (rows, n): writing to them changes the body, unless they are said to be copies. `ids` gives each point's number in
+    the order of generation, of all bodies.
 
     Compiled code takes the `storage` of the points, whose rows are a little longer. The first `awake` points take part
     in steps; the rest sleeps (`sleeping`). While any sleeps, `signal_speed_asleep` [m/s] is no less than that of each
@@ -141,14 +151,48 @@ class Body:
         return tuple(map(np.float32, plain)) if self._of_law == "single" else plain
 
     @property
-    def places(self) -> NDArray[np.float64]:
-        """Coordinates of all points in double precision, whatever that of `points` is, shape (2, n) [m]."""
-        return places_of(self.points)
+    def positions(self) -> NDArray[np.float64]:
+        """Coordinates x, y [m], shape (2, n); of points in single precision a copy in double precision."""
+        return positions_of(self.points)
+
+    @positions.setter
+    def positions(self, positions: NDArray[np.float64]) -> None:
+        put_positions(self.points, positions)
 
     @property
-    def velocities(self) -> NDArray[np.float64]:
-        """Velocity components, shape (2, n) [m/s]."""
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocity components [m/s], shape (2, n)."""
         return self.points[VX : VY + 1]
+
+    @property
+    def velocity_gradient(self) -> NDArray[np.float64]:
+        """L_ij = dv_i/dx_j [1/s] of the grid's velocity in the last step, shape (2, 2, n)."""
+        return self.points[GRADIENT].reshape(2, 2, -1)
+
+    @property
+    def affine(self) -> NDArray[np.float64]:
+        """The velocity gradient A_ij that a point brings to the grid [1/s], shape (2, 2, n)."""
+        return self.points[AFFINE].reshape(2, 2, -1)
+
+    @property
+    def stress(self) -> NDArray[np.float64]:
+        """Stress xx, yy, zz, xy [Pa], tension-positive, shape (4, n)."""
+        return self.points[SXX : SXY + 1]
+
+    @property
+    def pressure(self) -> NDArray[np.float64]:
+        """Mean pressure p = -tr(sigma)/3 [Pa], a copy, shape (n,)."""
+        return np.asarray(self.points[SXX : SZZ + 1].sum(axis=0) / -3.0)
+
+    @property
+    def density(self) -> NDArray[np.float64]:
+        """Bulk density [kg/m3], shape (n,)."""
+        return self.points[DENSITY]
+
+    @property
+    def volume(self) -> NDArray[np.float64]:
+        """Volume per width [m2], a copy, shape (n,)."""
+        return np.asarray(self.point_mass / self.points[DENSITY])
 
     def largest_signal_speed(self) -> float:
         """The largest sum of sound speed and point speed [m/s], in plain Python over the distinct states."""
@@ -159,7 +203,7 @@ class Body:
             for xx, yy, zz, xy, density, *state in np.unique(block, axis=0).tolist():
                 stress = SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0)
                 fastest = max(fastest, self.law.sound_speed(stress, density, self.law.state(*state), self.parameters))
-        return fastest + float(np.sqrt((self.velocities**2).sum(axis=0).max()))
+        return fastest + float(np.sqrt((self.velocity**2).sum(axis=0).max()))
 
     def sort(self, grid: Grid, basis: Basis) -> None:
         """Bring the points that are awake into the order of their stencils and cut them into stripes."""

@@ -2,7 +2,7 @@
 
 import math
 import time
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from grainlaw.mpm_core.kernels.volume_coupling import STEPS_PER_TIE
 from grainlaw.mpm_core.kernels.wall_clearance import Contact
 from grainlaw.mpm_core.kernels.walls import SIDES, Wall, WallKind, hold_at_walls, join_periodic, rows_in_reach
 from grainlaw.mpm_core.layout import LXX, LYY, X, Y
+from grainlaw.mpm_core.ledger import Ledger
 from grainlaw.mpm_core.output.fields import chosen_fields
 from grainlaw.mpm_core.parallel.sorting import LONGEST_DRIFT
 from grainlaw.mpm_core.parallel.threads import use_threads
@@ -38,50 +39,6 @@ from grainlaw.mpm_core.stepping.time_step import (
 
 # A volumetric strain increment beyond which no explicit step can be right.
 LARGEST_INCREMENT = 0.5
-
-
-@dataclass
-class Ledger:
-    """Energies per width [J/m]: potential energy relative to the start, works since the start.
-
-    Velocities belong to the middles of steps, and so do kinetic energy, potential energy and internal work: half of the
-    last step's rise and work is still to come. A balance of energies at different times would be wrong by the work of
-    half a step.
-
-    `wall_friction` is the part of `wall_work` that sliding dissipates. The initial elastic energy is NaN where a law
-    does not state its energy.
-    """
-
-    kinetic: float
-    initial_kinetic: float
-    initial_elastic: float
-    potential: float = 0.0
-    internal_work: float = 0.0
-    wall_work: float = 0.0
-    wall_friction: float = 0.0
-    rise_to_come: float = 0.0
-    work_to_come: float = 0.0
-
-    def count(self, kinetic: float, risen: float, worked: float) -> None:
-        """Take in a step: the new kinetic energy, the rise of the potential energy and the work of the stress."""
-        self.kinetic = kinetic
-        self.potential += self.rise_to_come + 0.5 * risen
-        self.internal_work += self.work_to_come + 0.5 * worked
-        self.rise_to_come, self.work_to_come = 0.5 * risen, 0.5 * worked
-
-    @property
-    def numerical_dissipation(self) -> float:
-        """What is left of the balance: energy that transfers and time integration took (or gave, if negative)."""
-        return self.initial_kinetic - self.kinetic - self.potential - self.internal_work - self.wall_work
-
-    @property
-    def kinetic_at_end(self) -> float:
-        """Kinetic energy at the end of the step, with what its second half will bring [J/m]."""
-        return self.kinetic - self.rise_to_come - self.work_to_come
-
-    def inelastic_work(self, elastic: float) -> float:
-        """What of the internal work is not in the elastic energy at the end of the step [J/m]: plastic and viscous."""
-        return self.internal_work + self.work_to_come - (elastic - self.initial_elastic)
 
 
 class Simulation:
@@ -118,7 +75,7 @@ class Simulation:
         self.drift = math.inf
         self.reach = nothing_in_reach(self.grid)
         self.contact = self._contact()
-        kinetic = sum(0.5 * body.point_mass * float((body.velocities**2).sum()) for body in self.bodies)
+        kinetic = sum(0.5 * body.point_mass * float((body.velocity**2).sum()) for body in self.bodies)
         self.ledger = Ledger(kinetic, kinetic, initial_elastic)
         self.sleep = self._sleep()
         # No signal is slower than a fall through one cell, for material without stiffness.
@@ -134,7 +91,7 @@ class Simulation:
 
     def _signals_of_points(self) -> list[tuple[float, float]]:
         """Of each body the fastest signal and the fastest point [m/s], in plain Python."""
-        return [(body.largest_signal_speed(), float(np.hypot(*body.velocities).max())) for body in self.bodies]
+        return [(body.largest_signal_speed(), float(np.hypot(*body.velocity).max())) for body in self.bodies]
 
     def _take_signals(self, signals: list[tuple[float, float]]) -> None:
         self.signal_speed = self._signal_speed(signals)
@@ -175,6 +132,40 @@ class Simulation:
         if self.sleep is not None:
             self._let_sleep(self.sleep)
 
+    def advance_to(self, time: float) -> None:
+        """Step to a time [s], with the steps of the scene. Raises SimulationError as `step` and `next_step` do."""
+        for _ in self.steps_to(time):
+            pass
+
+    def steps_to(self, time: float) -> Iterator[float]:
+        """The steps [s] to a time [s], each when it has been taken; whoever leaves the loop stops there."""
+        use_threads(self.threads)
+        while self.time < time:
+            dt, arrival = self.next_step(time)
+            self.step(dt)
+            if arrival is not None:
+                self.time = arrival
+            yield dt
+
+    def next_step(self, target: float) -> tuple[float, float | None]:
+        """The next time step [s], and the time of arrival if it ends on the target.
+
+        The step is the adaptive one, or the fixed one, shortened so that a whole number of equal steps leads there.
+        Raises SimulationError below the smallest step, or if the fixed step has become unstable.
+        """
+        stable = self.stable_step()
+        largest = self.scene.time.step or self.adaptive_step()
+        if largest > stable:
+            where = f"t = {self.time:.6g} s, step {self.steps}"
+            raise SimulationError(
+                f"{where}: the fixed step {largest:.4g} s is above the stable one, now {stable:.4g} s"
+            )
+        if largest < self.smallest_step:
+            self._fail_too_small(largest)
+        remaining = target - self.time
+        count = max(1, math.ceil(remaining / largest * (1.0 - 1e-12)))
+        return remaining / count, target if count == 1 else None
+
     def stable_step(self) -> float:
         """The largest stable step [s] at the present state: a cell over the fastest signal; infinite without any."""
         return self.grid.cell_size / self.signal_speed if self.signal_speed > 0.0 else math.inf
@@ -184,7 +175,7 @@ class Simulation:
         stable = self.scene.time.safety * self.stable_step()
         return min(stable, LARGEST_STRAIN / self.strain_rate) if self.strain_rate > 0.0 else stable
 
-    def fail_too_small(self, step: float) -> None:
+    def _fail_too_small(self, step: float) -> None:
         """Stop a run whose step would have to be this small [s], naming the point that asks for it."""
         by_strain = step < self.scene.time.safety * self.stable_step()
         reason = strain_rates if by_strain else signal_speeds
@@ -285,7 +276,7 @@ class Simulation:
 
     def _fail_outside(self, axis: int) -> None:
         for body in self.bodies:
-            coordinate = body.places[axis]
+            coordinate = body.positions[axis]
             outside = (coordinate < self.grid.lower[axis]) | (coordinate > self.grid.upper[axis])
             if outside.any():
                 self._fail(body, int(np.argmax(outside)), "the point has left the domain")

@@ -109,7 +109,7 @@ def node_mass_and_momentum(simulation):
 
 def momentum(simulation):
     """Momentum of all points [kg/s], shape (2,)."""
-    return sum(body.point_mass * body.velocities.sum(axis=1) for body in simulation.bodies)
+    return sum(body.point_mass * body.velocity.sum(axis=1) for body in simulation.bodies)
 
 
 def call_command_line(monkeypatch, *arguments):

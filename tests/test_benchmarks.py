@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scenes_for_tests import CAM_CLAY, COLUMN, simulation
 
-from benchmarks.columns import advance_to, cell_size_for, make_steps, moving_column
+from benchmarks.columns import cell_size_for, make_steps, moving_column
 from benchmarks.roofline import Roofline
 from benchmarks.yardstick import Yardstick
 from grainlaw.mpm_core.layout import X, Y
@@ -46,7 +46,7 @@ def test_the_yardstick_is_no_straw_man_and_comes_to_the_pile_of_the_library():
     cell_size = 0.0125
     library = collapse("mu(I)-LC", cell_size, {"transfer.scheme": "apic"})
     yardstick = Yardstick(library)
-    advance_to(library, 0.4)
+    library.advance_to(0.4)
     yardstick.advance_to(0.4)
     heights = library.bodies[0].points[Y].mean(), (yardstick.x + yardstick.lower)[:, 1].mean()
     widths = library.bodies[0].points[X].std(), yardstick.x[:, 0].std()

@@ -36,7 +36,7 @@ def bar(law, parameters):
     phase = 0.5 * np.pi * body.points[X] / 0.6
     body.points[VX] = SPEED * np.sin(phase)
     body.points[LXX] = body.points[AXX] = SPEED * 0.5 * np.pi / 0.6 * np.cos(phase)
-    squares = (body.velocities**2).sum() + 0.25 * case.grid.cell_size**2 * (body.points[AFFINE] ** 2).sum()
+    squares = (body.velocity**2).sum() + 0.25 * case.grid.cell_size**2 * (body.points[AFFINE] ** 2).sum()
     case.ledger.kinetic = case.ledger.initial_kinetic = 0.5 * body.point_mass * float(squares)
     return case, case.ledger.initial_kinetic
 
@@ -109,7 +109,7 @@ def test_a_wall_that_slides_dissipates_by_its_sliding_and_does_work():
         case.step(0.2 * case.stable_step())
     (body,) = case.bodies
     ledger, mass = case.ledger, body.count * body.point_mass
-    speed = float(body.velocities[0].mean())
+    speed = float(body.velocity[0].mean())
     assert speed == pytest.approx(0.3 * G * 0.1, rel=0.1)
     # The floor slides by 1 m/s t less the path of the block; what it gives becomes heat or moves the block.
     assert ledger.wall_friction == pytest.approx(0.3 * mass * G * (0.1 - 0.5 * speed * 0.1), rel=0.05)

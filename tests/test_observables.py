@@ -59,7 +59,7 @@ def test_bodies_count_by_their_mass():
 def test_the_order_of_points_does_not_matter():
     order = np.random.default_rng(6).permutation(2000)
     ordered = evenly(2000)
-    shuffled = body(*ordered.places[:, order])
+    shuffled = body(*ordered.positions[:, order])
     first, second = (pile_shape([one], 0.0, CELL) for one in (ordered, shuffled))
     assert first.runout == second.runout
     assert first.height == second.height

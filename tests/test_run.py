@@ -115,7 +115,7 @@ def ringing_bar(safety, time_constant):
     phase = 0.5 * np.pi * body.points[X] / 0.6
     body.points[VX] = 0.05 * np.sin(phase)
     body.points[LXX] = body.points[AXX] = 0.05 * 0.5 * np.pi / 0.6 * np.cos(phase)
-    squares = (body.velocities**2).sum() + 0.25 * case.grid.cell_size**2 * (body.points[AFFINE] ** 2).sum()
+    squares = (body.velocity**2).sum() + 0.25 * case.grid.cell_size**2 * (body.points[AFFINE] ** 2).sum()
     start = case.ledger.initial_kinetic = 0.5 * body.point_mass * float(squares)
     kinetic = []
     while case.time < 0.6:

@@ -13,7 +13,7 @@ from grainlaw.materials import InputError, SymmetricTensor, registry
 from grainlaw.materials.compilation import make_single_step, pointwise_law
 from grainlaw.materials.precision import PRECISIONS, as_numbers
 from grainlaw.materials.single_precision import in_single, nearest_single
-from grainlaw.mpm_core.kernels.positions import places_of, put_places
+from grainlaw.mpm_core.kernels.positions import positions_of
 from grainlaw.mpm_core.layout import SXX
 from grainlaw.mpm_core.output.observables import pile_shape
 
@@ -92,20 +92,20 @@ def test_a_function_in_single_precision_returns_singles():
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_places_are_kept_to_fourteen_digits(precision):
     body = simulation(BLOCK, {"precision": precision}).bodies[0]
-    places = body.places + np.random.default_rng(1).normal(size=(2, body.count))
-    put_places(body.points, places)
-    np.testing.assert_allclose(places_of(body.points), places, rtol=1e-14, atol=1e-14)
+    places = body.positions + np.random.default_rng(1).normal(size=(2, body.count))
+    body.positions = places
+    np.testing.assert_allclose(positions_of(body.points), places, rtol=1e-14, atol=1e-14)
 
 
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_a_point_that_moves_by_less_than_a_single_resolves_moves_all_the_same(precision):
     velocity, dt, steps = 1e-6, 1e-3, 200
     case = simulation(BLOCK, {"precision": precision, "body.0.velocity": [velocity, 0.0]})
-    start = case.bodies[0].places.mean(axis=1)
+    start = case.bodies[0].positions.mean(axis=1)
     assert velocity * dt < 0.1 * np.finfo(np.float32).eps * start[0]
     for _ in range(steps):
         case.step(dt)
-    moved = case.bodies[0].places.mean(axis=1) - start
+    moved = case.bodies[0].positions.mean(axis=1) - start
     assert moved[0] == pytest.approx(velocity * dt * steps, rel=1e-5)
 
 

@@ -9,7 +9,7 @@ from scenes_for_tests import BLOCK, CAM_CLAY, ELASTIC, simulation
 from grainlaw.materials import InputError, SimulationError, get_material
 from grainlaw.mpm_core.layout import AXX, AYY, LXX, LYY, VX, VY, X, Y
 from grainlaw.mpm_core.scene.model import Scene
-from grainlaw.mpm_core.stepping.run import next_step, run
+from grainlaw.mpm_core.stepping.run import run
 from grainlaw.mpm_core.stepping.time_step import LARGEST_STRAIN, SMALLEST_SHARE, signal_bounds
 
 
@@ -72,7 +72,7 @@ def test_open_material_that_nothing_moves_stays_where_it_is():
     (body,) = case.bodies
     places = body.points[[X, Y]].copy()
     while case.time < 0.1:
-        dt, _ = next_step(case, 0.1)
+        dt, _ = case.next_step(0.1)
         case.step(dt)
     # At the edge of contact Cam Clay starts with its smallest pressure, 1 Pa.
     np.testing.assert_allclose(body.points[[X, Y]][:, np.argsort(body.ids)], places, atol=1e-4)
@@ -96,7 +96,7 @@ def test_a_run_that_would_have_to_step_below_the_smallest_step_says_why():
     body.points[VX, 17] = 1e8
     case.measure_signals()
     with pytest.raises(SimulationError) as error:
-        next_step(case, 0.1)
+        case.next_step(0.1)
     assert re.search(
         rf"point {body.ids[17]} of body\.0 \(linear_elastic\) at \(\S+, \S+\) m: the step would have to shrink to "
         r"\S+ s, below the smallest one, \S+ s \(time\.smallest_step\): sound speed 4\.47 m/s, speed 1e\+08 m/s",
@@ -106,7 +106,7 @@ def test_a_run_that_would_have_to_step_below_the_smallest_step_says_why():
     body.points[LXX, 3] = -1e7
     case.measure_signals()
     with pytest.raises(SimulationError, match=rf"point {body.ids[3]} of .*volumetric strain rate 1e\+07 1/s"):
-        next_step(case, 0.1)
+        case.next_step(0.1)
 
 
 def test_a_smallest_step_above_the_first_is_refused(tmp_path):

@@ -104,7 +104,7 @@ def test_two_threads_give_the_bits_of_one(precision):
 def test_single_precision_halves_what_is_kept_and_hardly_changes_the_result():
     double, single = (final_state(1, precision)[0] for precision in PRECISIONS)
     (exact,), (rounded,) = double.bodies, single.bodies
-    places = [body.places[:, np.argsort(body.ids)] for body in (exact, rounded)]
+    places = [body.positions[:, np.argsort(body.ids)] for body in (exact, rounded)]
     moved = np.abs(places[1] - places[0]) / double.grid.cell_size
     assert moved.max() > 1e-9
     assert np.quantile(moved, 0.99) < 1e-2

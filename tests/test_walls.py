@@ -57,7 +57,7 @@ def test_a_block_that_is_lowered_on_a_friction_wall_touches_it(side, basis):
     }
     case = simulation(BLOCK, changes)
     time_constant = 0.05
-    case.body_force = lambda body, time: -body.velocities / time_constant
+    case.body_force = lambda body, time: -body.velocity / time_constant
     advance(case, 0.3 / (G * time_constant) + 0.5)
     # A quarter of a cell, less the strain of the lowest row.
     assert distances_from(side, case).min() == pytest.approx(0.25, abs=2e-3)
@@ -202,12 +202,12 @@ def test_uniform_motion_around_a_periodic_box_comes_back_to_the_same_state(preci
     changes = {"boundary": sides, "body.0.shape": disc, "body.0.velocity": [1.0, 0.8], "precision": precision}
     case = simulation(BLOCK, changes)
     (body,) = case.bodies
-    start = body.places[:, np.argsort(body.ids)]
+    start = body.positions[:, np.argsort(body.ids)]
     before = momentum(case)
     for _ in range(500):
         case.step(2e-3)
     np.testing.assert_allclose(momentum(case), before, rtol=round_off)
-    end = body.places[:, np.argsort(body.ids)]
+    end = body.positions[:, np.argsort(body.ids)]
     size = np.array([[1.0], [0.8]])
     away = np.mod(end - start + 0.5 * size, size) - 0.5 * size
     np.testing.assert_allclose(away, 0.0, atol=off)

@@ -96,7 +96,7 @@ class DrivenSquare:
     ) -> None:
         self.simulation = simulation_of({**_scene(cells, points_per_cell, settings), "precision": precision})
         self.body = self.simulation.bodies[0]
-        self.places = self.body.places
+        self.places = self.body.positions.copy()
         self.force_factor = force_factor
         points = self.body.points
         points[[VX, VY]] = velocity(self.places, 0.0)
@@ -115,7 +115,7 @@ class DrivenSquare:
 
     def _errors(self, present: Simulation) -> Errors:
         places, points = self.places[:, self.body.ids], self.body.points
-        off = self.body.places - places - displacement(places, present.time)
+        off = self.body.positions - places - displacement(places, present.time)
         off_stress = points[[SXX, SYY]] - stress(places, present.time)
         return Errors(
             float(np.sqrt((off**2).sum(axis=0).mean())) / AMPLITUDE,

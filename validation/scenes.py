@@ -8,7 +8,6 @@ from grainlaw.materials import InputError
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
-from grainlaw.mpm_core.stepping.run import next_step
 
 SCENES = Path(__file__).resolve().parents[1] / "scenes"
 
@@ -35,12 +34,7 @@ def advance(
     """Step to `end` [s], calling `observe` at the ends of equal intervals of time."""
     start = simulation.time
     for count in range(1, intervals + 1):
-        target = start + (end - start) * count / intervals
-        while simulation.time < target:
-            dt, arrival = next_step(simulation, target)
-            simulation.step(dt)
-            if arrival is not None:
-                simulation.time = arrival
+        simulation.advance_to(start + (end - start) * count / intervals)
         if observe is not None:
             observe(simulation)
 

@@ -24,7 +24,7 @@ BodyForce = Callable[[Body, float], NDArray[np.float64]]
 def scatter_body_force(body: Body, acceleration: NDArray[np.float64], grid: Grid, basis: Basis) -> None:
     """Add w_i m b of each point to the forces of the nodes."""
     _make_scatter(basis)(
-        *body.places,
+        *body.positions,
         body.point_mass * acceleration,
         grid.nodes,
         grid.shape[1],

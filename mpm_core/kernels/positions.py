@@ -29,8 +29,10 @@ def coordinate_of(points: NDArray[Any], axis: int) -> NDArray[np.float64]:
     return coordinate.astype(np.float64) + points[(REST_X, REST_Y)[axis]]
 
 
-def places_of(points: NDArray[Any]) -> NDArray[np.float64]:
-    """Coordinates of points in double precision, shape (2, n) [m]."""
+def positions_of(points: NDArray[Any]) -> NDArray[np.float64]:
+    """Coordinates of points in double precision, shape (2, n) [m]; a view where that is how they are stored."""
+    if points.dtype == np.float64:
+        return points[X : Y + 1]
     return np.stack([coordinate_of(points, axis) for axis in (0, 1)])
 
 
@@ -42,9 +44,9 @@ def put_coordinate(points: NDArray[Any], axis: int, coordinate: NDArray[np.float
         points[(REST_X, REST_Y)[axis]] = coordinate - points[row]
 
 
-def put_places(points: NDArray[Any], places: NDArray[np.float64]) -> None:
+def put_positions(points: NDArray[Any], positions: NDArray[np.float64]) -> None:
     """Move points to coordinates, shape (2, n) [m]."""
-    for axis, coordinate in enumerate(places):
+    for axis, coordinate in enumerate(positions):
         put_coordinate(points, axis, coordinate)
 
 

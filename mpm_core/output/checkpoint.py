@@ -7,7 +7,8 @@ import h5py
 
 from grainlaw.materials import InputError, atomic
 from grainlaw.mpm_core.grid.active_nodes import reach_between
-from grainlaw.mpm_core.simulation import Ledger, Simulation
+from grainlaw.mpm_core.ledger import Ledger
+from grainlaw.mpm_core.simulation import Simulation
 
 CHECKPOINT_NAME = "checkpoint.h5"
 # What of the reach is stored; the rest follows.

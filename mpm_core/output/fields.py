@@ -103,7 +103,7 @@ def _is_available(name: str, laws: Sequence[Law]) -> bool:
 def make_frame(time: float, step: int, bodies: Sequence[Body], names: Sequence[str]) -> Frame:
     """A frame of all bodies, in the order in which their points were generated."""
     order = np.argsort(np.concatenate([body.ids for body in bodies]))
-    plane = np.concatenate([body.places.T for body in bodies])
+    plane = np.concatenate([body.positions.T for body in bodies])
     positions = np.column_stack([plane, np.zeros(len(plane))])
     fields = tuple(_frame_field(name, bodies, order) for name in names)
     return Frame(time, step, positions[order], fields)

@@ -31,7 +31,7 @@ class PileShape:
 
 def pile_shape(bodies: Sequence[Body], floor: float, cell_size: float) -> PileShape:
     """Measure the shape of all bodies together."""
-    x, y = np.concatenate([body.places for body in bodies], axis=1)
+    x, y = np.concatenate([body.positions for body in bodies], axis=1)
     mass = np.concatenate([np.full(body.count, body.point_mass) for body in bodies])
     beyond = 0.5 * (1.0 - MASS_BETWEEN_FRONTS) * mass.sum()
     front_left = _level(x, mass, beyond)

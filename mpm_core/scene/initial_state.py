@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from grainlaw.materials import InputError, SymmetricTensor
 from grainlaw.materials.law import Law
 from grainlaw.mpm_core.body import POINTS_AT_ONCE, Body
-from grainlaw.mpm_core.kernels.positions import put_density, put_places
+from grainlaw.mpm_core.kernels.positions import put_density, put_positions
 from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, RESTS, SXX, SYY, SZZ, VX, VY, allocate
 from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
 from grainlaw.mpm_core.scene.shapes import lattice
@@ -67,7 +67,7 @@ def _build(
     columns = FIRST_STATE + len(law.state._fields) + keeps_shear_strain + rests
     storage = allocate(columns, len(positions), scene.precision)
     points = storage[:, : len(positions)]
-    put_places(points, positions.T)
+    put_positions(points, positions.T)
     points[VX], points[VY] = section.velocity
     put_density(points, section.density)
     spacing = scene.grid.cell_size / section.points_per_cell**0.5

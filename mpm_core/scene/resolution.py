@@ -40,5 +40,5 @@ def refuse_coarse_stress(
 
 def typical_stress(body: Body, gravity: float) -> float:
     """The larger of initial stress and weight of the body [Pa]; zero if it has neither."""
-    height = float(np.ptp(body.places, axis=1).max())
+    height = float(np.ptp(body.positions, axis=1).max())
     return max(float(np.abs(body.points[[SXX, SYY]]).max()), body.initial_density * gravity * height)

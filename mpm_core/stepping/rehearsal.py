@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from grainlaw.materials import InputError, SimulationError
 from grainlaw.mpm_core.scene.model import FEWEST_PERIODIC_CELLS, Scene
 from grainlaw.mpm_core.simulation import Simulation
-from grainlaw.mpm_core.stepping.run import next_step
 
 # How much coarser, at most; and how many points there have to be.
 LARGEST_FACTOR = 4
@@ -57,18 +56,18 @@ def rehearse(scene: Scene, factor: int, threads: int) -> Rehearsal:
     times, travelled, durations = [0.0], [0.0], []
     started = time.thread_time()
     try:
-        while simulation.time < scene.time.end and time.thread_time() - started < PATIENCE:
-            dt, arrival = next_step(simulation, scene.time.end)
-            travelled.append(travelled[-1] + dt * simulation.signal_speed)
-            before = time.perf_counter()
-            simulation.step(dt)
+        signal_speed, before = simulation.signal_speed, time.perf_counter()
+        for dt in simulation.steps_to(scene.time.end):
             durations.append(time.perf_counter() - before)
-            simulation.time = simulation.time if arrival is None else arrival
+            travelled.append(travelled[-1] + dt * signal_speed)
             times.append(simulation.time)
             if len(durations) == FIRST_STEPS:
                 started = time.thread_time()
+            if time.thread_time() - started > PATIENCE:
+                break
+            signal_speed, before = simulation.signal_speed, time.perf_counter()
     except SimulationError:
-        travelled = travelled[: len(times)]
+        pass
     points = sum(body.count for body in simulation.bodies)
     return Rehearsal(simulation.grid.cell_size, np.array(times), np.array(travelled), _growth(durations) / points)
 

@@ -1,6 +1,5 @@
 """The time loop: from a scene to a run's folder."""
 
-import math
 import resource
 import time
 from collections.abc import Callable
@@ -75,36 +74,16 @@ def _advance(simulation: Simulation, recorder: Recorder, started: float, progres
     if simulation.steps == 0:
         recorder.record(0.0, time.perf_counter() - started)
     while simulation.time < simulation.scene.time.end:
-        dt, arrival = next_step(simulation, recorder.next_frame_time())
         before = time.perf_counter()
-        simulation.step(dt)
-        if arrival is not None:
-            simulation.time = arrival
-        now = time.perf_counter()
-        if len(durations) < 2:
-            durations.append(now - before)
-        recorder.record(dt, now - started)
-        if progress is not None:
-            progress(simulation, dt)
+        for dt in simulation.steps_to(recorder.next_frame_time()):
+            now = time.perf_counter()
+            if len(durations) < 2:
+                durations.append(now - before)
+            recorder.record(dt, now - started)
+            if progress is not None:
+                progress(simulation, dt)
+            before = time.perf_counter()
     return durations[0] - durations[1] if len(durations) == 2 else 0.0
-
-
-def next_step(simulation: Simulation, target: float) -> tuple[float, float | None]:
-    """The next time step [s], and the time of arrival if it ends on the target.
-
-    The step is the adaptive one, or the fixed one, shortened so that a whole number of equal steps leads to the target.
-    Raises SimulationError below the smallest step, or if the fixed step has become unstable.
-    """
-    settings, stable = simulation.scene.time, simulation.stable_step()
-    largest = settings.step or simulation.adaptive_step()
-    if largest > stable:
-        where = f"t = {simulation.time:.6g} s, step {simulation.steps}"
-        raise SimulationError(f"{where}: the fixed step {largest:.4g} s is above the stable one, now {stable:.4g} s")
-    if largest < simulation.smallest_step:
-        simulation.fail_too_small(largest)
-    remaining = target - simulation.time
-    count = max(1, math.ceil(remaining / largest * (1.0 - 1e-12)))
-    return remaining / count, target if count == 1 else None
 
 
 def _refuse_impossible_steps(simulation: Simulation) -> None:

@@ -98,7 +98,7 @@ def _stiffness(law: Law, parameters: Any, start: _Probe, direction: SymmetricTen
 def what_sets_the_step(body: Body, reason: Callable[[Body], NDArray[np.float64]]) -> tuple[int, str]:
     """The point where a reason for small steps is strongest, and what it contributes to the bounds, in words."""
     point = int(np.argmax(reason(body)))
-    sound, speed, rate = sound_speeds(body)[point], np.hypot(*body.velocities)[point], strain_rates(body)[point]
+    sound, speed, rate = sound_speeds(body)[point], np.hypot(*body.velocity)[point], strain_rates(body)[point]
     return point, f"sound speed {sound:.3g} m/s, speed {speed:.3g} m/s, volumetric strain rate {rate:.3g} 1/s"
 
 
@@ -110,7 +110,7 @@ def strain_rates(body: Body) -> NDArray[np.float64]:
 
 def signal_speeds(body: Body) -> NDArray[np.float64]:
     """Sound speed and speed of each point [m/s], in plain Python."""
-    speeds: NDArray[np.float64] = sound_speeds(body) + np.hypot(*body.velocities)
+    speeds: NDArray[np.float64] = sound_speeds(body) + np.hypot(*body.velocity)
     return speeds
 
 

@@ -78,7 +78,7 @@ def flight(label: str, law: str, parameter_set: str, effort: Effort) -> tuple[tu
 def momentum(label: str, simulation: Simulation) -> Measurement:
     """The momentum of all points over the sum of its amounts before the throw."""
     body = simulation.bodies[0]
-    total = float(np.abs(body.velocities.sum(axis=1)).max())
+    total = float(np.abs(body.velocity.sum(axis=1)).max())
     return upper_bound(f"{label}: momentum", "1", total / (body.count * RATE * RADIUS), MOMENTUM_BAND)
 
 

@@ -29,7 +29,7 @@ def elastic_energy(body: Body) -> float:
 
 def momentum(simulation: Simulation) -> np.ndarray:
     """Of all points [kg/s]."""
-    return np.sum([body.point_mass * body.velocities.sum(axis=1) for body in simulation.bodies], axis=0)
+    return np.sum([body.point_mass * body.velocity.sum(axis=1) for body in simulation.bodies], axis=0)
 
 
 def collision(changes: dict[str, Any]) -> np.ndarray:
@@ -37,7 +37,7 @@ def collision(changes: dict[str, Any]) -> np.ndarray:
     simulation = shipped_simulation("two_discs", changes)
     first = simulation.bodies[0]
     start, initial = momentum(simulation), simulation.ledger.kinetic
-    scale = float(first.point_mass * np.linalg.norm(first.velocities.sum(axis=1)))
+    scale = float(first.point_mass * np.linalg.norm(first.velocity.sum(axis=1)))
     rows = [(0.0, 1.0, 0.0, 0.0)]
 
     def observe(present: Simulation) -> None:

@@ -10,7 +10,7 @@ from grainlaw.materials import SimulationError
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.mpm_core.body import Body
 from grainlaw.validation.driven_square import PERIOD, Array, DrivenSquare
-from grainlaw.validation.speed_error.setting import WARM_UP_STEPS, make_steps
+from grainlaw.validation.speed_error.setting import warm_up
 from grainlaw.validation.speed_error.sweep import BASES, SAFETIES, SCHEMES
 
 CELLS = (8, 16, 32)
@@ -63,7 +63,7 @@ def cost_and_error(setting: ExactSetting) -> tuple[float, float] | None:
 
     square.simulation.body_force = timed_force
     try:
-        make_steps(square.simulation, PERIOD, WARM_UP_STEPS)
+        warm_up(square.simulation, PERIOD)
         in_force, started = 0.0, time.process_time()
         errors = square.errors_of_a_period()
     except SimulationError:

@@ -1,0 +1,47 @@
+"""Where the energy of a run is, and where it went."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Ledger:
+    """Energies per width [J/m]: potential energy relative to the start, works since the start.
+
+    Velocities belong to the middles of steps, and so do kinetic energy, potential energy and internal work: half of the
+    last step's rise and work is still to come. A balance of energies at different times would be wrong by the work of
+    half a step.
+
+    `wall_friction` is the part of `wall_work` that sliding dissipates. The initial elastic energy is NaN where a law
+    does not state its energy.
+    """
+
+    kinetic: float
+    initial_kinetic: float
+    initial_elastic: float
+    potential: float = 0.0
+    internal_work: float = 0.0
+    wall_work: float = 0.0
+    wall_friction: float = 0.0
+    rise_to_come: float = 0.0
+    work_to_come: float = 0.0
+
+    def count(self, kinetic: float, risen: float, worked: float) -> None:
+        """Take in a step: the new kinetic energy, the rise of the potential energy and the work of the stress."""
+        self.kinetic = kinetic
+        self.potential += self.rise_to_come + 0.5 * risen
+        self.internal_work += self.work_to_come + 0.5 * worked
+        self.rise_to_come, self.work_to_come = 0.5 * risen, 0.5 * worked
+
+    @property
+    def numerical_dissipation(self) -> float:
+        """What is left of the balance: energy that transfers and time integration took (or gave, if negative)."""
+        return self.initial_kinetic - self.kinetic - self.potential - self.internal_work - self.wall_work
+
+    @property
+    def kinetic_at_end(self) -> float:
+        """Kinetic energy at the end of the step, with what its second half will bring [J/m]."""
+        return self.kinetic - self.rise_to_come - self.work_to_come
+
+    def inelastic_work(self, elastic: float) -> float:
+        """What of the internal work is not in the elastic energy at the end of the step [J/m]: plastic and viscous."""
+        return self.internal_work + self.work_to_come - (elastic - self.initial_elastic)
