@@ -165,7 +165,7 @@ def _domain(record: Record, materials: list[str], effort: Effort, roofline: Roof
     record.add("domain", found, domain_table(materials[0], found))
 
 
-def _memory(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+def _flip_fraction(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
     largest, smallest = cell_size_for(effort.sizes[-1]), cell_size_for(effort.sizes[0])
     found = {material: memory_per_point(material, largest, smallest, effort.precision) for material in materials}
     record.add("memory", found, memory_table(found))
@@ -186,7 +186,7 @@ MEASURES: dict[Part, Callable[[Record, list[str], Effort, Roofline], None]] = {
     Part.SIZES: _sizes,
     Part.CORES: _two_cores,
     Part.DOMAIN: _domain,
-    Part.MEMORY: _memory,
+    Part.MEMORY: _flip_fraction,
     Part.PLANS: _plans,
 }
 

@@ -1,6 +1,5 @@
 """The paper's column as the benchmarks use it: at rest at the start, or set in motion so that every point yields."""
 
-from grainlaw.mpm_core.layout import AXX, AYY, LXX, LYY, VX, VY, X, Y
 from grainlaw.mpm_core.parallel.threads import use_threads
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.collapses import collapse
@@ -30,10 +29,10 @@ def moving_column(
     simulation = collapse(material, cell_size, {"grid.upper": upper, "precision": precision})
     simulation.threads = threads
     body = simulation.bodies[0]
-    body.points[VX] = SPREADING_RATE * (body.points[X] - body.points[X].mean())
-    body.points[VY] = -SPREADING_RATE * body.points[Y]
-    body.points[LXX], body.points[LYY] = SPREADING_RATE, -SPREADING_RATE
-    body.points[AXX], body.points[AYY] = SPREADING_RATE, -SPREADING_RATE
+    body.velocity[0] = SPREADING_RATE * (body.positions[0] - body.positions[0].mean())
+    body.velocity[1] = -SPREADING_RATE * body.positions[1]
+    body.velocity_gradient[0, 0], body.velocity_gradient[1, 1] = SPREADING_RATE, -SPREADING_RATE
+    body.affine[0, 0], body.affine[1, 1] = SPREADING_RATE, -SPREADING_RATE
     return simulation
 
 

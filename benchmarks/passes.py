@@ -20,7 +20,7 @@ from benchmarks.roofline import Roofline
 from grainlaw.mpm_core import simulation as stepping
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.kernels import grid_update as momentum
-from grainlaw.mpm_core.kernels.wall_clearance import Contact
+from grainlaw.mpm_core.kernels.wall_clearance import WallClearance
 from grainlaw.mpm_core.simulation import Simulation
 
 # Columns of a point that a pass reads and writes; of the stress pass without the law's state.
@@ -91,7 +91,7 @@ def _clocks(simulation: Simulation) -> "Iterator[dict[str, float]]":
         (momentum, "clear", "grid"),
         (momentum, "update_nodes", "grid"),
         (stepping, "hold_at_walls", "grid"),
-        (Contact, "gaps", "grid"),
+        (WallClearance, "gaps", "grid"),
     ]
     for body in simulation.bodies:
         places += [

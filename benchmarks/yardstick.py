@@ -27,7 +27,6 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from grainlaw.materials.compilation import PointwiseLaw, mark_of_sources, named, pointwise_law
 from grainlaw.materials.tensor import SymmetricTensor
-from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
 from grainlaw.mpm_core.simulation import Simulation
 
 # Nodes between the edge of the grid and the walls.
@@ -141,15 +140,14 @@ class Yardstick:
 
     def __init__(self, simulation: Simulation) -> None:
         scene, body = simulation.scene, simulation.bodies[0]
-        points = body.points
         self.h, self.safety, self.gravity = scene.grid.cell_size, scene.time.safety, scene.gravity
         self.friction = scene.boundary.bottom.coefficient
         self.lower = np.array(scene.grid.lower) - PADDING * self.h
-        self.x = np.ascontiguousarray(points[[X, Y]].T) - self.lower
-        self.v = np.ascontiguousarray(points[[VX, VY]].T)
+        self.x = np.ascontiguousarray(body.positions.T) - self.lower
+        self.v = np.ascontiguousarray(body.velocity.T)
         self.c = np.zeros((body.count, 4))
-        self.stress = np.ascontiguousarray(points[[SXX, SYY, SZZ, SXY]].T)
-        self.density = points[DENSITY].copy()
+        self.stress = np.ascontiguousarray(body.stress.T)
+        self.density = body.density.copy()
         self.states = np.ascontiguousarray(body.states.T)
         self.point_mass, self.parameters = body.point_mass, tuple(body.parameters)
         shape = (scene.grid.cells[0] + 1 + 2 * PADDING, scene.grid.cells[1] + 1 + 2 * PADDING)
@@ -159,7 +157,7 @@ class Yardstick:
         self.last_step = 0.0
         self.wave_factor = simulation.signal_bounds[0].wave_factor
 
-    def stable_step(self) -> float:
+    def critical_time_step(self) -> float:
         """The largest stable step [s]: a cell over the fastest signal."""
         return self.h / max(self.signal_speed, float(np.hypot(*self.gravity) * self.h) ** 0.5)
 
@@ -183,7 +181,7 @@ class Yardstick:
     def advance_to(self, target: float) -> None:
         """Step to a time [s], with the library's rule for the step."""
         while self.time < target:
-            largest = self.safety * self.stable_step()
+            largest = self.safety * self.critical_time_step()
             count = max(1, int(np.ceil((target - self.time) / largest)))
             self.step((target - self.time) / count)
             self.time = target if count == 1 else self.time

@@ -1,5 +1,6 @@
 """A body: the points of one material, their law, and the kernels that were chosen for them."""
 
+import math
 from collections.abc import Callable
 from functools import cached_property
 from typing import Any
@@ -12,8 +13,8 @@ from grainlaw.materials.compilation import explained, pointwise_law
 from grainlaw.materials.law import Law
 from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.kernels.g2p import REPORTS as TRANSFER_REPORTS
-from grainlaw.mpm_core.kernels.g2p import make_grid_to_points
-from grainlaw.mpm_core.kernels.p2g import make_points_to_grid
+from grainlaw.mpm_core.kernels.g2p import make_g2p
+from grainlaw.mpm_core.kernels.p2g import make_p2g
 from grainlaw.mpm_core.kernels.positions import (
     coordinate_of,
     density_of_first,
@@ -25,12 +26,44 @@ from grainlaw.mpm_core.kernels.shape_functions import Basis
 from grainlaw.mpm_core.kernels.simd.registers import MOST_AT_ONCE
 from grainlaw.mpm_core.kernels.stress_update import MAX_SIGNAL_SPEED, make_stress_pass
 from grainlaw.mpm_core.kernels.stress_update import REPORTS as STRESS_REPORTS
-from grainlaw.mpm_core.layout import AFFINE, DENSITY, FIRST_STATE, GRADIENT, NAMES, RESTS, SXX, SXY, SYY, SZZ, VX, VY
+from grainlaw.mpm_core.layout import (
+    AFFINE,
+    AXX,
+    DENSITY,
+    FIRST_STATE,
+    GRADIENT,
+    LXX,
+    NAMES,
+    NEIGHBOUR_MEAN,
+    OVERFILL,
+    REMAINDERS,
+    SXX,
+    SXY,
+    SYY,
+    SZZ,
+    VX,
+    VY,
+)
 from grainlaw.mpm_core.parallel.blocks import blocks_of
 from grainlaw.mpm_core.parallel.sorting import reorder, sort_by_stencil
 
-# Points whose distinct states are found together at the start; memory would peak with all of them.
+# Points whose distinct states are found together at the start; flip_fraction would peak with all of them.
 POINTS_AT_ONCE = 2**18
+
+
+class RowsView:
+    """A quantity of the points as a view of its rows, of some shape before the points; assigning writes there."""
+
+    def __init__(self, first: int, shape: tuple[int, ...], doc: str) -> None:
+        self.rows = slice(first, first + math.prod(shape))
+        self.shape = shape
+        self.__doc__ = doc
+
+    def __get__(self, body: "Body", owner: type["Body"] | None = None) -> NDArray[np.float64]:
+        return body.points[self.rows].reshape(*self.shape, body.count)
+
+    def __set__(self, body: "Body", values: Any) -> None:
+        self.__get__(body)[...] = values
 
 
 class Body:
@@ -67,9 +100,9 @@ class Body:
         self.stripe_starts = np.zeros(1, np.int64)
         self.signal_speed_asleep = 0.0
         self.set_awake(count)
-        self._points_to_grid: Callable[..., Any]
-        self._grid_to_points: Callable[..., Any]
-        self._tying_grid_to_points: Callable[..., Any]
+        self._p2g: Callable[..., Any]
+        self._g2p: Callable[..., Any]
+        self._coupling_g2p: Callable[..., Any]
         self._stress_pass: Callable[..., Any]
 
     @property
@@ -96,14 +129,14 @@ class Body:
 
     @property
     def is_loose(self) -> bool:
-        """Whether the material is loose grains, whose volumes are tied to one another."""
+        """Whether the material is loose grains, whose volumes are coupled."""
         return not self.law.carries_tension
 
     @property
-    def column_names(self) -> tuple[str, ...]:
+    def row_names(self) -> tuple[str, ...]:
         """What the rows of `points` hold."""
         shear_strain = ("shear_strain",) if self._keeps_shear_strain else ()
-        return (*NAMES, *self.law.state._fields, *shear_strain, *self._rests)
+        return (*NAMES, *self.law.state._fields, *shear_strain, *self._remainders)
 
     @property
     def states(self) -> NDArray[np.float64]:
@@ -117,11 +150,11 @@ class Body:
 
     @property
     def _keeps_shear_strain(self) -> bool:
-        return len(self.points) > FIRST_STATE + len(self.law.state._fields) + len(self._rests)
+        return len(self.points) > FIRST_STATE + len(self.law.state._fields) + len(self._remainders)
 
     @property
-    def _rests(self) -> tuple[str, ...]:
-        return RESTS if self.precision == "single" else ()
+    def _remainders(self) -> tuple[str, ...]:
+        return REMAINDERS if self.precision == "single" else ()
 
     @property
     def precision(self) -> str:
@@ -133,12 +166,12 @@ class Body:
         """In what precision the law is computed."""
         return self.precision if self.law.holds_in_single else "double"
 
-    def choose_kernels(self, basis: Basis, spreads: bool) -> None:
+    def choose_kernels(self, basis: Basis, shifts_points: bool) -> None:
         """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""
-        ties = self.is_loose
-        self._points_to_grid = make_points_to_grid(basis, self.precision)
-        self._grid_to_points = make_grid_to_points(basis, False, False, self.precision)
-        self._tying_grid_to_points = make_grid_to_points(basis, ties, spreads and ties, self.precision)
+        couples = self.is_loose
+        self._p2g = make_p2g(basis, self.precision)
+        self._g2p = make_g2p(basis, False, False, self.precision)
+        self._coupling_g2p = make_g2p(basis, couples, shifts_points and couples, self.precision)
         law = pointwise_law(self.law, self._of_law)
         self._stress_pass = make_stress_pass(law, self._keeps_shear_strain, self.precision)
         no_points = self.storage, 0, 1.0, self._law_parameters
@@ -159,35 +192,20 @@ class Body:
     def positions(self, positions: NDArray[np.float64]) -> None:
         put_positions(self.points, positions)
 
-    @property
-    def velocity(self) -> NDArray[np.float64]:
-        """Velocity components [m/s], shape (2, n)."""
-        return self.points[VX : VY + 1]
-
-    @property
-    def velocity_gradient(self) -> NDArray[np.float64]:
-        """L_ij = dv_i/dx_j [1/s] of the grid's velocity in the last step, shape (2, 2, n)."""
-        return self.points[GRADIENT].reshape(2, 2, -1)
-
-    @property
-    def affine(self) -> NDArray[np.float64]:
-        """The velocity gradient A_ij that a point brings to the grid [1/s], shape (2, 2, n)."""
-        return self.points[AFFINE].reshape(2, 2, -1)
-
-    @property
-    def stress(self) -> NDArray[np.float64]:
-        """Stress xx, yy, zz, xy [Pa], tension-positive, shape (4, n)."""
-        return self.points[SXX : SXY + 1]
+    velocity = RowsView(VX, (2,), "Velocity components [m/s], shape (2, n).")
+    velocity_gradient = RowsView(LXX, (2, 2), "L_ij = dv_i/dx_j on the grid in the last step [1/s], shape (2, 2, n).")
+    affine = RowsView(AXX, (2, 2), "The velocity gradient A_ij that a point brings to the grid [1/s], shape (2, 2, n).")
+    stress = RowsView(SXX, (4,), "Stress xx, yy, zz, xy [Pa], tension-positive, shape (4, n).")
+    density = RowsView(DENSITY, (), "Bulk density [kg/m3], shape (n,).")
+    neighbour_mean = RowsView(
+        NEIGHBOUR_MEAN, (), "Pressure [Pa] or, without stress, density [kg/m3] around, shape (n,)."
+    )
+    overfill = RowsView(OVERFILL, (), "Overfill of the nodes around [1], shape (n,).")
 
     @property
     def pressure(self) -> NDArray[np.float64]:
         """Mean pressure p = -tr(sigma)/3 [Pa], a copy, shape (n,)."""
         return np.asarray(self.points[SXX : SZZ + 1].sum(axis=0) / -3.0)
-
-    @property
-    def density(self) -> NDArray[np.float64]:
-        """Bulk density [kg/m3], shape (n,)."""
-        return self.points[DENSITY]
 
     @property
     def volume(self) -> NDArray[np.float64]:
@@ -225,17 +243,17 @@ class Body:
         awake = len(asleep) - int(np.count_nonzero(asleep))
         self.set_awake(min(len(asleep), -(-awake // MOST_AT_ONCE) * MOST_AT_ONCE))
 
-    def to_grid(self, grid: Grid, threads: int) -> None:
+    def p2g(self, grid: Grid, threads: int) -> None:
         """Scatter mass, momentum and internal force of the points that are awake."""
         self._scatter(self.stripe_starts, threads, grid.nodes, grid)
 
-    def sleepers_to_grid(self, nodes: NDArray[np.float64], grid: Grid) -> None:
+    def p2g_of_sleepers(self, nodes: NDArray[np.float64], grid: Grid) -> None:
         """Scatter what the sleeping points bring to nodes of their own, in the order in which they lie."""
         # A single stripe, to one thread: nobody waits for it.
         self._scatter(np.array([self.awake, self.count]), 1, nodes, grid)
 
     def _scatter(self, stripe_starts: NDArray[np.int64], threads: int, nodes: NDArray[np.float64], grid: Grid) -> None:
-        self._points_to_grid(
+        self._p2g(
             self.storage,
             self.point_mass,
             stripe_starts,
@@ -247,9 +265,9 @@ class Body:
             grid.cell_size,
         )
 
-    def from_grid(self, grid: Grid, dt: float, memory: float, threads: int, ties: bool = False) -> None:
-        """Gather velocity and its gradient, and where volumes are to be tied what that needs; move the points."""
-        transfer = self._tying_grid_to_points if ties else self._grid_to_points
+    def g2p(self, grid: Grid, dt: float, flip_fraction: float, threads: int, couples: bool = False) -> None:
+        """Gather velocity and its gradient, and to couple volumes what that needs; move the points."""
+        transfer = self._coupling_g2p if couples else self._g2p
         transfer(
             self.storage,
             self.awake,
@@ -260,7 +278,7 @@ class Body:
             grid.origin,
             grid.cell_size,
             dt,
-            memory,
+            flip_fraction,
             threads,
             self.transfer_reports,
         )
@@ -269,14 +287,14 @@ class Body:
         """Bring points that left through a periodic side back in through the other."""
         put_coordinate(self.points, axis, lower + np.mod(coordinate_of(self.points, axis) - lower, period))
 
-    def update_stress(self, dt: float, tied: float = 0.0, exchange: float = 0.0, threads: int = 1) -> None:
+    def update_stress(self, dt: float, coupled_time: float = 0.0, exchange: float = 0.0, threads: int = 1) -> None:
         """Rotate the stress, bring the density forward, call the law.
 
-        `tied` is the time [s] for which the volumes of loose grains are tied in this step, `exchange` that time over
-        the time constant of the transfer.
+        `coupled_time` is the time [s] for which the volumes of loose grains are coupled in this step, `exchange` that
+        time over the FLIP blend time of the transfer.
         """
-        tied, points = tied if self.is_loose else 0.0, (self.storage, self.awake, self.point_mass)
-        self._stress_pass(*points, self._law_parameters, dt, tied, exchange, threads, self.stress_reports)
+        coupled_time, points = coupled_time if self.is_loose else 0.0, (self.storage, self.awake, self.point_mass)
+        self._stress_pass(*points, self._law_parameters, dt, coupled_time, exchange, threads, self.stress_reports)
 
     def state(self, name: str) -> NDArray[np.float64]:
         """A state variable of all points, in their present order. Raises InputError for an unknown name."""

@@ -17,7 +17,7 @@ NAMES = (
     *("gradient_xx", "gradient_xy", "gradient_yx", "gradient_yy"),
     *("affine_xx", "affine_xy", "affine_yx", "affine_yy"),
     *("stress_xx", "stress_yy", "stress_zz", "stress_xy"),
-    *("density", "mean_around", "crowding"),
+    *("density", "neighbour_mean", "overfill"),
 )
 X, Y = 0, 1
 VX, VY = 2, 3
@@ -27,13 +27,13 @@ GRADIENT, AFFINE = slice(4, 8), slice(8, 12)
 SXX, SYY, SZZ, SXY = 12, 13, 14, 15
 DENSITY = 16
 # What a point gathers of the material around it: the mean pressure, or without stress of its own the mean density; and
-# the crowding.
-MEAN_AROUND, CROWDING = 17, 18
+# the overfill.
+NEIGHBOUR_MEAN, OVERFILL = 17, 18
 FIRST_STATE = len(NAMES)
 
 # From the end, in single precision.
-REST_DENSITY, REST_X, REST_Y = -3, -2, -1
-RESTS = ("rest_of_density", "rest_of_x", "rest_of_y")
+DENSITY_REMAINDER, X_REMAINDER, Y_REMAINDER = -3, -2, -1
+REMAINDERS = ("density_remainder", "x_remainder", "y_remainder")
 
 # In bytes.
 CACHE_LINE = 64

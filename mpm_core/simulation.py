@@ -8,7 +8,7 @@ import numpy as np
 
 from grainlaw.materials import SimulationError
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.grid.active_nodes import Reach, nothing_in_reach, reach_of
+from grainlaw.mpm_core.grid.active_nodes import ActiveNodes, find_active_nodes, no_active_nodes
 from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.kernels import grid_update as momentum
 from grainlaw.mpm_core.kernels.body_force import BodyForce, scatter_body_force
@@ -16,9 +16,9 @@ from grainlaw.mpm_core.kernels.elastic_energy import elastic_energy
 from grainlaw.mpm_core.kernels.held_nodes import hold_nodes
 from grainlaw.mpm_core.kernels.shape_functions import BASES
 from grainlaw.mpm_core.kernels.step_report import StepReport, step_report, together
-from grainlaw.mpm_core.kernels.volume_coupling import STEPS_PER_TIE
-from grainlaw.mpm_core.kernels.wall_clearance import Contact
-from grainlaw.mpm_core.kernels.walls import SIDES, Wall, WallKind, hold_at_walls, join_periodic, rows_in_reach
+from grainlaw.mpm_core.kernels.volume_coupling import STEPS_PER_COUPLING
+from grainlaw.mpm_core.kernels.wall_clearance import WallClearance
+from grainlaw.mpm_core.kernels.walls import SIDES, Wall, WallKind, active_rows, hold_at_walls, join_periodic
 from grainlaw.mpm_core.layout import LXX, LYY, X, Y
 from grainlaw.mpm_core.ledger import Ledger
 from grainlaw.mpm_core.output.fields import chosen_fields
@@ -56,7 +56,7 @@ class Simulation:
         self.basis = BASES[scene.transfer.basis]
         self.periodic_axes = _periodic_axes(scene)
         size = (scene.grid.lower, scene.grid.cells, scene.grid.cell_size)
-        self.grid = Grid(*size, self.periodic_axes, self.basis.wall_room, scene.precision)
+        self.grid = Grid(*size, self.periodic_axes, self.basis.wall_node_fraction, scene.precision)
         self.fields = chosen_fields(scene.output.fields, [scene.law(section.material) for section in scene.body])
         self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
         signals = self._signals_of_points()
@@ -73,8 +73,8 @@ class Simulation:
         self.last_step = 0.0
         self.steps = 0
         self.drift = math.inf
-        self.reach = nothing_in_reach(self.grid)
-        self.contact = self._contact()
+        self.active = no_active_nodes(self.grid)
+        self.wall_clearance = self._wall_clearance()
         kinetic = sum(0.5 * body.point_mass * float((body.velocity**2).sum()) for body in self.bodies)
         self.ledger = Ledger(kinetic, kinetic, initial_elastic)
         self.sleep = self._sleep()
@@ -105,26 +105,26 @@ class Simulation:
         """
         grid = self.grid
         kick = 0.5 * (self.last_step + dt)
-        tied = STEPS_PER_TIE * dt if self.steps % STEPS_PER_TIE == 0 else 0.0
+        coupled_time = STEPS_PER_COUPLING * dt if self.steps % STEPS_PER_COUPLING == 0 else 0.0
         self._sort_if_drifted()
         self._clear_nodes()
         for body in self.bodies:
-            body.to_grid(grid, self.threads)
+            body.p2g(grid, self.threads)
             if self.body_force is not None:
                 scatter_body_force(body, self.body_force(body, self.time), grid, self.basis)
         for axis in self.periodic_axes:
             join_periodic(grid.nodes, grid, axis)
-        momentum.update_nodes(grid, self.reach, self.scene.gravity, kick, ties=tied > 0.0)
-        taken = hold_at_walls(grid, self.contact.rows, self.contact.gaps(), dt)
+        momentum.update_nodes(grid, self.active, self.scene.gravity, kick, couples=coupled_time > 0.0)
+        taken = hold_at_walls(grid, self.wall_clearance.rows, self.wall_clearance.clearances(), dt)
         self.ledger.wall_work += taken.work
         self.ledger.wall_friction += taken.friction
         hold_nodes(grid, self.held_nodes)
         if self.sleep is not None:
-            self.sleep.hold(self.reach)
+            self.sleep.hold(self.active)
         for body in self.bodies:
-            body.from_grid(grid, dt, self._memory(dt), self.threads, ties=tied > 0.0)
+            body.g2p(grid, dt, self._flip_fraction(dt), self.threads, couples=coupled_time > 0.0)
         for body in self.bodies:
-            body.update_stress(dt, tied, tied / self.scene.transfer.time_constant, self.threads)
+            body.update_stress(dt, coupled_time, coupled_time / self.scene.transfer.time_constant, self.threads)
         self.time += dt
         self.last_step = dt
         self.steps += 1
@@ -153,7 +153,7 @@ class Simulation:
         The step is the adaptive one, or the fixed one, shortened so that a whole number of equal steps leads there.
         Raises SimulationError below the smallest step, or if the fixed step has become unstable.
         """
-        stable = self.stable_step()
+        stable = self.critical_time_step()
         largest = self.scene.time.step or self.adaptive_step()
         if largest > stable:
             where = f"t = {self.time:.6g} s, step {self.steps}"
@@ -166,18 +166,18 @@ class Simulation:
         count = max(1, math.ceil(remaining / largest * (1.0 - 1e-12)))
         return remaining / count, target if count == 1 else None
 
-    def stable_step(self) -> float:
+    def critical_time_step(self) -> float:
         """The largest stable step [s] at the present state: a cell over the fastest signal; infinite without any."""
         return self.grid.cell_size / self.signal_speed if self.signal_speed > 0.0 else math.inf
 
     def adaptive_step(self) -> float:
         """The safe share of the stable step [s], or less, so that no point is strained too much in one step."""
-        stable = self.scene.time.safety * self.stable_step()
+        stable = self.scene.time.safety * self.critical_time_step()
         return min(stable, LARGEST_STRAIN / self.strain_rate) if self.strain_rate > 0.0 else stable
 
     def _fail_too_small(self, step: float) -> None:
         """Stop a run whose step would have to be this small [s], naming the point that asks for it."""
-        by_strain = step < self.scene.time.safety * self.stable_step()
+        by_strain = step < self.scene.time.safety * self.critical_time_step()
         reason = strain_rates if by_strain else signal_speeds
         body = max(self.bodies, key=lambda found: float(reason(found).max()))
         point, words = what_sets_the_step(body, reason)
@@ -193,7 +193,7 @@ class Simulation:
         """The present elastic energy of all bodies per width [J/m]; NaN where a law does not state its energy."""
         return sum(elastic_energy(body) for body in self.bodies)
 
-    def _memory(self, dt: float) -> float:
+    def _flip_fraction(self, dt: float) -> float:
         """The share of the unresolved velocity that outlives a step."""
         transfer = self.scene.transfer
         return math.exp(-dt / transfer.time_constant) if transfer.scheme == "affine_flip" else 0.0
@@ -201,9 +201,9 @@ class Simulation:
     def _clear_nodes(self) -> None:
         """Leave on the nodes only what sleeping points bring."""
         if self.sleep is not None and self.sleep.has_sleepers:
-            self.sleep.lay_on_grid(self.reach)
+            self.sleep.lay_on_grid(self.active)
         else:
-            momentum.clear(self.grid.nodes, self.grid, self.reach)
+            momentum.clear(self.grid.nodes, self.grid, self.active)
 
     def _sort_if_drifted(self) -> None:
         if self.drift > LONGEST_DRIFT * self.grid.cell_size:
@@ -215,7 +215,7 @@ class Simulation:
                 body.wrap(axis, self.grid.lower[axis], self.grid.upper[axis] - self.grid.lower[axis])
             body.sort(self.grid, self.basis)
         self.drift = 0.0
-        self.find_reach()
+        self.find_active_nodes()
 
     def _sleep(self) -> Sleep | None:
         settings = self.scene.sleep
@@ -224,27 +224,27 @@ class Simulation:
     def _let_sleep(self, sleep: Sleep) -> None:
         """Wake what something moves, and let fall asleep what rests."""
         looks = self.steps % STEPS_PER_LOOK == 0 and sleep.has_sleepers
-        woke = looks and sleep.wake_up(self.reach)
+        woke = looks and sleep.wake_up(self.active)
         # The reports of this step, of which the sleepers' signal speed is taken, serve one division.
         fell = not woke and self.body_force is None and sleep.fall_asleep(self.time)
         if woke or fell:
             self._sort()
             sleep.bring_sleepers()
 
-    def find_reach(self) -> None:
-        """Find the nodes that what is awake can reach until the next sort, and keep to them."""
+    def find_active_nodes(self) -> None:
+        """Find the nodes that points awake can touch until the next sort, and keep to them."""
         points = [body.points_awake for body in self.bodies]
-        self.keep_to(reach_of(points, self.grid, self.basis, self.periodic_axes))
+        self.keep_to(find_active_nodes(points, self.grid, self.basis, self.periodic_axes))
 
-    def keep_to(self, reach: Reach) -> None:
+    def keep_to(self, active: ActiveNodes) -> None:
         """Work on these nodes until the next sort, and leave zeros everywhere else."""
-        momentum.clear(self.grid.nodes, self.grid, self.reach)
-        self.reach = reach
-        self.contact = self._contact()
+        momentum.clear(self.grid.nodes, self.grid, self.active)
+        self.active = active
+        self.wall_clearance = self._wall_clearance()
 
-    def _contact(self) -> Contact:
-        rows = rows_in_reach(self.walls, self.grid, self.reach)
-        return Contact(rows, self.bodies, self.grid, self.basis, self.periodic_axes, self.threads)
+    def _wall_clearance(self) -> WallClearance:
+        rows = active_rows(self.walls, self.grid, self.active)
+        return WallClearance(rows, self.bodies, self.grid, self.basis, self.periodic_axes, self.threads)
 
     def _take_reports(self, dt: float) -> None:
         reports = [step_report(body.transfer_reports, body.stress_reports) for body in self.bodies]

@@ -10,7 +10,6 @@ import tomli_w
 from grainlaw.materials import registry
 from grainlaw.mpm_core import Scene, Simulation
 from grainlaw.mpm_core.grid.grid import COMPONENTS, MASS, OLD_VX, OLD_VY
-from grainlaw.mpm_core.layout import AFFINE, GRADIENT, VX, VY, X, Y
 
 ELASTIC = {"bulk_modulus": 1e4, "poisson_ratio": 0.2}
 MU_I_LC = {
@@ -96,8 +95,8 @@ def write_scene(path, content, changes=None):
 def set_affine_velocity(body, velocity, gradient):
     """Give all points the velocity v + L x and the gradient L."""
     (vx, vy), gradient = velocity, np.asarray(gradient)
-    body.points[[VX, VY]] = np.array([[vx], [vy]]) + gradient @ body.points[[X, Y]]
-    body.points[GRADIENT] = body.points[AFFINE] = gradient.reshape(4, 1)
+    body.velocity = np.array([[vx], [vy]]) + gradient @ body.positions
+    body.velocity_gradient = body.affine = gradient.reshape(4, 1)
 
 
 def node_mass_and_momentum(simulation):

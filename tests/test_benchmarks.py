@@ -13,7 +13,6 @@ from scenes_for_tests import CAM_CLAY, COLUMN, simulation
 from benchmarks.columns import cell_size_for, make_steps, moving_column
 from benchmarks.roofline import Roofline
 from benchmarks.yardstick import Yardstick
-from grainlaw.mpm_core.layout import X, Y
 from grainlaw.mpm_core.parallel.threads import cores
 from grainlaw.validation.collapses import collapse
 
@@ -48,8 +47,8 @@ def test_the_yardstick_is_no_straw_man_and_comes_to_the_pile_of_the_library():
     yardstick = Yardstick(library)
     library.advance_to(0.4)
     yardstick.advance_to(0.4)
-    heights = library.bodies[0].points[Y].mean(), (yardstick.x + yardstick.lower)[:, 1].mean()
-    widths = library.bodies[0].points[X].std(), yardstick.x[:, 0].std()
+    heights = library.bodies[0].positions[1].mean(), (yardstick.x + yardstick.lower)[:, 1].mean()
+    widths = library.bodies[0].positions[0].std(), yardstick.x[:, 0].std()
     # Its floor holds the nodes and not the material: about half a cell.
     assert heights[1] == pytest.approx(heights[0], abs=0.6 * cell_size)
     assert widths[1] == pytest.approx(widths[0], rel=0.04)
@@ -113,7 +112,7 @@ def test_work_and_memory_follow_the_material_and_not_the_domain():
     assert large.grid.cells == (10 * small.grid.cells[0], 10 * small.grid.cells[1])
     for found in (small, large):
         make_steps(found, 20)
-    assert large.reach.nodes == small.reach.nodes
+    assert large.active.nodes == small.active.nodes
     assert large.bodies[0].points.shape == small.bodies[0].points.shape
     for row, twin in zip(large.bodies[0].points, small.bodies[0].points, strict=True):
         np.testing.assert_allclose(row, twin, rtol=1e-9, atol=1e-9)

@@ -5,27 +5,27 @@ import pytest
 from numba import njit, prange
 
 from grainlaw.mpm_core.parallel.threads import cores, use_threads
-from grainlaw.mpm_core.parallel.work_sharing import next_part, shares_of, threads_of
+from grainlaw.mpm_core.parallel.work_sharing import chunk_ranges, next_chunk, threads_of
 
 
 @njit
 def taken_in_turn(parts, threads, turns):
     """The parts that threads get which come in this order."""
-    shares = shares_of(parts, threads)
-    return [next_part(shares, thread) for thread in turns]
+    shares = chunk_ranges(parts, threads)
+    return [next_chunk(shares, thread) for thread in turns]
 
 
 @njit(parallel=True)
 def times_taken(parts, threads):
     """How often each part is taken by threads that work at once, the first more slowly than the others."""
-    shares, times, waste = shares_of(parts, threads), np.zeros(parts, np.int64), np.zeros(threads)
+    shares, times, waste = chunk_ranges(parts, threads), np.zeros(parts, np.int64), np.zeros(threads)
     for thread in prange(threads_of(shares)):
-        part = next_part(shares, thread)
+        part = next_chunk(shares, thread)
         while part >= 0:
             times[part] += 1
             for _ in range(1 if thread > 0 else 3):
                 waste[thread] = np.sin(waste[thread] + part)
-            part = next_part(shares, thread)
+            part = next_chunk(shares, thread)
     return times
 
 

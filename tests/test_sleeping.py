@@ -9,7 +9,6 @@ from scenes_for_tests import BLOCK, CAM_CLAY, COLUMN, changed, simulation
 from grainlaw.materials import InputError
 from grainlaw.mpm_core import Scene, run
 from grainlaw.mpm_core.grid.grid import COMPONENTS, MASS, PX, PY
-from grainlaw.mpm_core.layout import VX, VY
 from grainlaw.mpm_core.output.checkpoint import Clock, read_checkpoint, write_checkpoint
 from grainlaw.mpm_core.output.history import read_history
 from grainlaw.mpm_core.output.observables import pile_shape
@@ -87,7 +86,7 @@ def test_sleeping_points_keep_their_state(piles):
     after = body.points[:, order[before[1] - body.first_id]]
     assert kept.mean() > 0.5
     assert (after[:, kept] == before[0][:, kept]).all()
-    assert not body.points[[VX, VY], body.awake :].any()
+    assert not body.velocity[:, body.awake :].any()
 
 
 def test_no_point_is_lost_and_the_mass_of_sleepers_is_on_their_nodes(piles):

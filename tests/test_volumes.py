@@ -4,18 +4,17 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, MU_I_LC, set_affine_velocity, simulation
 
-from grainlaw.mpm_core.grid.grid import COMPONENTS, GHOSTS, NODE_CROWDING, Grid
+from grainlaw.mpm_core.grid.grid import COMPONENTS, GHOSTS, NODE_OVERFILL, Grid
 from grainlaw.mpm_core.kernels.shape_functions import BASES, make_stencil
 from grainlaw.mpm_core.kernels.volume_coupling import (
     NEARLY_FULL,
-    STEPS_PER_TIE,
+    STEPS_PER_COUPLING,
     closing_strain,
-    crowding_of,
-    evening_share,
-    evening_strain,
-    spreading_rate,
+    overfill_of,
+    shifting_rate,
+    smoothing_share,
+    smoothing_strain,
 )
-from grainlaw.mpm_core.layout import CROWDING, DENSITY, LXY, MEAN_AROUND, SXX, SXY, SYY, SZZ, VX, X, Y
 
 LOOSE = {
     "material": {"mu_i_lc": MU_I_LC},
@@ -27,13 +26,13 @@ INSTANT = 1e-12
 
 
 def pressures(body):
-    return -body.points[SXX : SZZ + 1].mean(axis=0)
+    return -body.stress[:3].mean(axis=0)
 
 
 @pytest.mark.parametrize("name", list(BASES))
 def test_the_room_of_a_node_is_the_integral_of_its_shape_function_over_the_domain(name):
     basis, cells, fine = BASES[name], 8, 2000
-    grid = Grid((0.0, 0.0), (cells, cells), 1.0, wall_room=basis.wall_room)
+    grid = Grid((0.0, 0.0), (cells, cells), 1.0, wall_node_fraction=basis.wall_node_fraction)
     stencil = make_stencil(basis)
     integrals = np.zeros(grid.shape[0])
     for coordinate in GHOSTS + (np.arange(cells * fine) + 0.5) / fine:
@@ -46,7 +45,7 @@ def test_the_room_of_a_node_is_the_integral_of_its_shape_function_over_the_domai
 def test_a_lattice_that_fills_the_domain_is_not_crowded():
     case = simulation(BLOCK, {**LOOSE, "body.0.shape": FILLING})
     case.step(INSTANT)
-    x, y, crowding = case.bodies[0].points[[X, Y, CROWDING]]
+    (x, y), crowding = case.bodies[0].positions, case.bodies[0].overfill
     # Two points per cell and axis do not integrate the changed weights at a wall exactly.
     near_wall = (np.minimum(x, 1.0 - x) < 0.25) | (np.minimum(y, 0.8 - y) < 0.25)
     assert np.abs(crowding[~near_wall]).max() < 1e-9
@@ -54,20 +53,20 @@ def test_a_lattice_that_fills_the_domain_is_not_crowded():
 
 
 def test_crowding_is_the_excess_of_volume_and_a_free_surface_has_none():
-    assert crowding_of(1.25, 1.0) == 0.25
-    assert crowding_of(0.95, 1.0) == pytest.approx(-0.05)
-    assert crowding_of(NEARLY_FULL - 0.01, 1.0) == 0.0
+    assert overfill_of(1.25, 1.0) == 0.25
+    assert overfill_of(0.95, 1.0) == pytest.approx(-0.05)
+    assert overfill_of(NEARLY_FULL - 0.01, 1.0) == 0.0
 
 
 def test_nothing_happens_at_rest():
-    assert evening_share(0.0, 0.01) == 0.0
-    assert spreading_rate(0.0, 1e-4) == 0.0
+    assert smoothing_share(0.0, 0.01) == 0.0
+    assert shifting_rate(0.0, 1e-4) == 0.0
 
 
 def test_pressures_move_towards_the_mean_and_points_only_close():
-    assert evening_strain(50.0, 100.0, 1e4, 0.1) > 0.0 > evening_strain(150.0, 100.0, 1e4, 0.1)
-    assert evening_strain(100.0, 100.0, 1e4, 0.1) == 0.0
-    assert evening_strain(1.0, 1e6, 1.0, 1.0) <= 0.1
+    assert smoothing_strain(50.0, 100.0, 1e4, 0.1) > 0.0 > smoothing_strain(150.0, 100.0, 1e4, 0.1)
+    assert smoothing_strain(100.0, 100.0, 1e4, 0.1) == 0.0
+    assert smoothing_strain(1.0, 1e6, 1.0, 1.0) <= 0.1
     assert closing_strain(1400.0, 1500.0, 0.5) == pytest.approx(0.5 * np.log(1500.0 / 1400.0), rel=1e-3)
     assert closing_strain(1500.0, 1400.0, 0.5) == 0.0
 
@@ -75,37 +74,37 @@ def test_pressures_move_towards_the_mean_and_points_only_close():
 def test_the_pressures_of_a_sheared_block_even_out_and_its_volume_stays():
     case = simulation(BLOCK, {**LOOSE, "body.0.shape": FILLING, "transfer.time_constant": 0.01})
     (body,) = case.bodies
-    body.points[DENSITY] *= 1.0 + 1e-3 * np.random.default_rng(1).normal(size=body.count)
-    volume = (body.point_mass / body.points[DENSITY]).sum()
-    body.points[LXY] = 1e-6
+    body.density *= 1.0 + 1e-3 * np.random.default_rng(1).normal(size=body.count)
+    volume = (body.volume).sum()
+    body.velocity_gradient[0, 1] = 1e-6
     body.update_stress(1e-9)
     scatter = pressures(body).std()
     for _ in range(20):
-        body.points[LXY] = 5.0
-        has_stress = (body.points[SXX] != 0.0) | (body.points[SYY] != 0.0)
-        body.points[MEAN_AROUND] = np.where(has_stress, pressures(body).mean(), 1000.0)
+        body.velocity_gradient[0, 1] = 5.0
+        has_stress = (body.stress[0] != 0.0) | (body.stress[1] != 0.0)
+        body.neighbour_mean = np.where(has_stress, pressures(body).mean(), 1000.0)
         body.update_stress(1e-3, 1e-3, 0.1)
     assert pressures(body).std() < 0.3 * scatter
-    assert (body.point_mass / body.points[DENSITY]).sum() == pytest.approx(volume, rel=1e-4)
+    assert (body.volume).sum() == pytest.approx(volume, rel=1e-4)
 
 
 def test_material_that_carries_tension_is_left_alone():
     results = []
     for mean_pressure, crowding in ((0.0, 0.0), (1e3, 0.5)):
         (body,) = simulation(BLOCK).bodies
-        body.points[LXY], body.points[MEAN_AROUND], body.points[CROWDING] = 5.0, mean_pressure, crowding
+        body.velocity_gradient[0, 1], body.neighbour_mean, body.overfill = 5.0, mean_pressure, crowding
         body.update_stress(1e-3, 1e-3, 0.1)
-        results.append(body.points[SXX : SXY + 2].copy())
+        results.append(np.vstack([body.stress, body.density]))
     np.testing.assert_array_equal(*results)
 
 
 def test_crowded_grains_are_squeezed():
     (body,) = simulation(BLOCK, LOOSE).bodies
-    body.points[LXY], body.points[CROWDING] = 5.0, 0.2
-    body.points[MEAN_AROUND] = 1000.0
-    before = body.points[DENSITY].copy()
+    body.velocity_gradient[0, 1], body.overfill = 5.0, 0.2
+    body.neighbour_mean = 1000.0
+    before = body.density.copy()
     body.update_stress(1e-3, 1e-3, 0.0)
-    assert (body.points[DENSITY] > before).all()
+    assert (body.density > before).all()
 
 
 @pytest.mark.parametrize(("material", "apart"), [(LOOSE, True), ({}, False)])
@@ -115,14 +114,14 @@ def test_crowded_grains_move_apart(material, apart):
     case.walls.clear()
     (body,) = case.bodies
     set_affine_velocity(body, (0.0, 0.0), [[0.0, 2.0], [0.0, 0.0]])
-    crowded = (np.abs(body.points[X] - 0.5) < 0.1) & (np.abs(body.points[Y] - 0.4) < 0.1)
-    body.points[DENSITY, crowded] *= 0.8
+    crowded = (np.abs(body.positions[0] - 0.5) < 0.1) & (np.abs(body.positions[1] - 0.4) < 0.1)
+    body.density[crowded] *= 0.8
     case.step(INSTANT)
-    assert case.grid.nodes.reshape(-1, COMPONENTS)[:, NODE_CROWDING].max() > 0.1
-    left = (np.abs(body.points[Y] - 0.4) < 0.03) & (np.abs(body.points[X] - 0.4) < 0.03)
-    before = body.points[X, left].copy()
+    assert case.grid.nodes.reshape(-1, COMPONENTS)[:, NODE_OVERFILL].max() > 0.1
+    left = (np.abs(body.positions[1] - 0.4) < 0.03) & (np.abs(body.positions[0] - 0.4) < 0.03)
+    before = body.positions[0, left].copy()
     dt = 1e-4
-    case.steps = STEPS_PER_TIE
+    case.steps = STEPS_PER_COUPLING
     case.step(dt)
-    moved = (body.points[X, left] - before) / dt - body.points[VX, left]
+    moved = (body.positions[0, left] - before) / dt - body.velocity[0, left]
     assert (moved < -1e-3).all() if apart else np.abs(moved).max() < 1e-6

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from grainlaw.materials.rheology import shear_modulus
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.layout import AXX, AYY, LXX, LYY, SXX, SYY, VX, VY
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.scenes import advance, simulation_of
 
@@ -98,9 +97,9 @@ class DrivenSquare:
         self.body = self.simulation.bodies[0]
         self.places = self.body.positions.copy()
         self.force_factor = force_factor
-        points = self.body.points
-        points[[VX, VY]] = velocity(self.places, 0.0)
-        points[[LXX, LYY]] = points[[AXX, AYY]] = velocity_gradient_at_start(self.places)
+        self.body.velocity = velocity(self.places, 0.0)
+        for axis, rate in enumerate(velocity_gradient_at_start(self.places)):
+            self.body.velocity_gradient[axis, axis] = self.body.affine[axis, axis] = rate
         self.simulation.body_force = self.force
 
     def force(self, body: Body, time: float) -> Array:
@@ -114,9 +113,9 @@ class DrivenSquare:
         return Errors(*(max(values) for values in zip(*found, strict=True)))
 
     def _errors(self, present: Simulation) -> Errors:
-        places, points = self.places[:, self.body.ids], self.body.points
+        places = self.places[:, self.body.ids]
         off = self.body.positions - places - displacement(places, present.time)
-        off_stress = points[[SXX, SYY]] - stress(places, present.time)
+        off_stress = self.body.stress[:2] - stress(places, present.time)
         return Errors(
             float(np.sqrt((off**2).sum(axis=0).mean())) / AMPLITUDE,
             float(np.sqrt((off_stress**2).sum(axis=0).mean())) / YOUNGS_MODULUS,

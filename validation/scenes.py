@@ -4,6 +4,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from grainlaw.materials import InputError
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.scene.model import Scene
@@ -39,8 +41,6 @@ def advance(
             observe(simulation)
 
 
-def in_order_of_generation(body: Body, row: int) -> Any:
-    """A row of the points, in the order in which they were generated; shape (n,)."""
-    values = body.points[row].copy()
-    values[body.ids - body.ids.min()] = body.points[row]
-    return values
+def in_order_of_generation(body: Body, values: Any) -> Any:
+    """Values of the points, shape (..., n), in the order in which the points were generated."""
+    return values[..., np.argsort(body.ids)]

@@ -64,7 +64,7 @@ def reckless_trial(simulation: Simulation, end: float) -> Trial:
     created = [0.0]
     try:
         while simulation.time < end:
-            simulation.step(RECKLESS * simulation.stable_step())
+            simulation.step(RECKLESS * simulation.critical_time_step())
             created.append(created_energy(simulation))
     except SimulationError as error:
         message = str(error)

@@ -32,12 +32,12 @@ def plan(
         "laws": ", ".join(planned.laws),
         "points": f"{planned.points:,}",
         "cells of the domain": f"{planned.cells:,}",
-        "nodes in reach of the material": f"{planned.nodes_in_reach:,}",
+        "active nodes": f"{planned.active_nodes:,}",
         "memory": f"{planned.memory_bytes / 1e6:.0f} MB, all included; {planned.bytes_per_point:.0f} bytes per point "
         "in arrays",
         "basis, transfer": f"{scene.transfer.basis}, {scene.transfer.scheme}, "
         f"time constant {scene.transfer.time_constant:g} s",
-        "time step": f"{planned.step:.3g} s at the start (stable: {planned.stable_step:.3g} s)",
+        "time step": f"{planned.step:.3g} s at the start (stable: {planned.critical_time_step:.3g} s)",
         "steps": f"about {planned.steps:,}",
         "rate": f"{planned.points / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "
         f"{planned.threads} thread{'s' if planned.threads > 1 else ''}",

@@ -1,7 +1,7 @@
-"""Which nodes the points that are awake can reach until they are sorted again: a range of rows per column of nodes.
+"""The active nodes, those that points awake can touch until they are sorted again: a range of rows per column of nodes.
 
-Work on the grid follows these nodes, so that its cost does not depend on the domain, nor on the air above a pile. Nodes
-out of reach hold zeros.
+Work on the grid follows these nodes, so that its cost does not depend on the domain, nor on the air above a pile. All
+other nodes hold zeros.
 """
 
 from collections.abc import Sequence
@@ -21,8 +21,8 @@ from grainlaw.mpm_core.layout import X, Y
 DRIFT = 1
 
 
-class Reach(NamedTuple):
-    """The nodes in reach, all limits inclusive; where there are none, the last lies before the first.
+class ActiveNodes(NamedTuple):
+    """The active nodes, all limits inclusive; where there are none, the last lies before the first.
 
     first_column, last_column  of the columns of nodes that have any
     first_row, last_row        of the rows that have any
@@ -38,7 +38,7 @@ class Reach(NamedTuple):
 
     @property
     def nodes(self) -> int:
-        """Number of nodes in reach."""
+        """Number of active nodes."""
         return int(np.maximum(0, self.last_rows - self.first_rows + 1).sum())
 
     def along(self, axis: int) -> tuple[int, int]:
@@ -46,24 +46,26 @@ class Reach(NamedTuple):
         return (self.first_column, self.last_column) if axis == 0 else (self.first_row, self.last_row)
 
 
-def nothing_in_reach(grid: Grid) -> Reach:
-    """The reach of no points."""
-    return reach_between(np.full(grid.shape[0], grid.shape[1]), np.full(grid.shape[0], -1))
+def no_active_nodes(grid: Grid) -> ActiveNodes:
+    """The active nodes of no points."""
+    return active_between(np.full(grid.shape[0], grid.shape[1]), np.full(grid.shape[0], -1))
 
 
-def reach_between(first_rows: NDArray[np.int64], last_rows: NDArray[np.int64]) -> Reach:
-    """The reach with these first and last rows in each column of the grid."""
+def active_between(first_rows: NDArray[np.int64], last_rows: NDArray[np.int64]) -> ActiveNodes:
+    """The active nodes with these first and last rows in each column of the grid."""
     columns = np.flatnonzero(last_rows >= first_rows)
     first, last = (int(columns[0]), int(columns[-1])) if len(columns) > 0 else (0, -1)
-    return Reach(first, last, int(first_rows.min()), int(last_rows.max()), first_rows, last_rows)
+    return ActiveNodes(first, last, int(first_rows.min()), int(last_rows.max()), first_rows, last_rows)
 
 
-def reach_of(groups: Sequence[NDArray[np.float64]], grid: Grid, basis: Basis, periodic_axes: Sequence[int]) -> Reach:
-    """The nodes that groups of points reach until they have drifted; all of them along a periodic axis.
+def find_active_nodes(
+    groups: Sequence[NDArray[np.float64]], grid: Grid, basis: Basis, periodic_axes: Sequence[int]
+) -> ActiveNodes:
+    """The nodes that groups of points can touch until they have drifted; all of them along a periodic axis.
 
     A group is an array of points like `Body.points`.
     """
-    *_, first, last = nothing_in_reach(grid)
+    *_, first, last = no_active_nodes(grid)
     for points in groups:
         _extend(points[X], points[Y], grid.origin, grid.cell_size, basis.offset, basis.width, first, last)
     np.clip(first, 0, grid.shape[1], out=first)
@@ -73,7 +75,7 @@ def reach_of(groups: Sequence[NDArray[np.float64]], grid: Grid, basis: Basis, pe
     if 1 in periodic_axes:
         occupied = last >= first
         first[occupied], last[occupied] = 0, grid.shape[1] - 1
-    return reach_between(first, last)
+    return active_between(first, last)
 
 
 @njit(cache=True)

@@ -12,12 +12,12 @@ from grainlaw.mpm_core.layout import CACHE_LINE
 
 # Components of a node, two quads, in double precision a cache line. The first quad: momentum and force before the
 # momentum update, new and old velocity after it. The second: mass, volume and volume times pressure before, mass and
-# what `volumes` is made of after.
+# what `volume_coupling` takes after.
 PX, PY, FX, FY = 0, 1, 2, 3
 NEW_VX, NEW_VY, OLD_VX, OLD_VY = 0, 1, 2, 3
 BULK = LANES
 MASS, VOLUME, VOLUME_PRESSURE = BULK, BULK + 1, BULK + 2
-NODE_CROWDING, NODE_PRESSURE, NODE_DENSITY = BULK + 1, BULK + 2, BULK + 3
+NODE_OVERFILL, NODE_PRESSURE, NODE_DENSITY = BULK + 1, BULK + 2, BULK + 3
 COMPONENTS = 2 * LANES
 
 # Nodes beyond each side of the domain, enough for the widest stencil of a point that touches a wall.
@@ -29,7 +29,8 @@ NO_GHOSTS = (-1, 2**31 - 1)
 class Grid:
     """A rectangle of `cells` square cells of `cell_size` [m] whose lower corner is `lower` [m].
 
-    `wall_room` is the part of a cell that belongs to a node at a wall (see `basis`), `precision` one of `PRECISIONS`.
+    `wall_node_fraction` is the part of a cell that belongs to a node at a wall (see `shape_functions`), `precision` one
+    of `PRECISIONS`.
     Memory is reserved for the whole domain but, being zero until written, occupied only where material has been.
     """
 
@@ -39,7 +40,7 @@ class Grid:
         cells: tuple[int, int],
         cell_size: float,
         periodic_axes: Sequence[int] = (),
-        wall_room: float = 0.5,
+        wall_node_fraction: float = 0.5,
         precision: str = "double",
     ) -> None:
         self.lower = lower
@@ -52,7 +53,7 @@ class Grid:
         # The nodes just beyond the walls, whose velocity is tied to the inside; no node where the axis is periodic.
         walls = [NO_GHOSTS if axis in periodic_axes else self._ghosts(axis) for axis in (0, 1)]
         self.ghosts = (*walls[0], *walls[1])
-        self.rooms = tuple(self._rooms(axis, axis in periodic_axes, wall_room) for axis in (0, 1))
+        self.node_widths = tuple(self._node_widths(axis, axis in periodic_axes, wall_node_fraction) for axis in (0, 1))
         self.origin = (lower[0] - GHOSTS * cell_size, lower[1] - GHOSTS * cell_size)
 
     def empty_nodes(self) -> NDArray[Any]:
@@ -67,20 +68,20 @@ class Grid:
     def _ghosts(self, axis: int) -> tuple[int, int]:
         return GHOSTS - 1, GHOSTS + self.cells[axis] + 1
 
-    def _rooms(self, axis: int, is_periodic: bool, wall_room: float) -> NDArray[np.float64]:
+    def _node_widths(self, axis: int, is_periodic: bool, wall_node_fraction: float) -> NDArray[np.float64]:
         """The length along an axis that belongs to each node, in cells."""
-        rooms = np.ones(self.shape[axis])
+        node_widths = np.ones(self.shape[axis])
         if not is_periodic:
             low, high = GHOSTS, GHOSTS + self.cells[axis]
             for wall, inside in ((low, low + 1), (high, high - 1)):
-                rooms[wall] -= 1.0 - wall_room
-                rooms[inside] += 0.5 - wall_room
-        return rooms
+                node_widths[wall] -= 1.0 - wall_node_fraction
+                node_widths[inside] += 0.5 - wall_node_fraction
+        return node_widths
 
 
 def _aligned_zeros(count: int, number: type[np.floating[Any]]) -> NDArray[Any]:
     """Zeroed numbers from the start of a cache line on, of which a node fills one, or half; no memory is touched."""
     line = CACHE_LINE // np.dtype(number).itemsize
-    room = np.zeros(count + line, number)
-    start = (-room.ctypes.data % CACHE_LINE) // room.itemsize
-    return room[start : start + count]
+    buffer = np.zeros(count + line, number)
+    start = (-buffer.ctypes.data % CACHE_LINE) // buffer.itemsize
+    return buffer[start : start + count]

@@ -1,4 +1,4 @@
-"""From grid to points: velocity, its gradient, the density around, and motion. Knows no law.
+"""G2P: velocity, its gradient, the density around, and advection. Knows no law.
 
 The moving-least-squares gradient of the grid's velocity at a point is L = sum_i w_i v_i (x_i - x_p)^T / D (Hu et al.
 2018). On top of it the point keeps what the grid did not resolve of its velocity field v + A (x - x_p), for a time
@@ -11,9 +11,9 @@ so that tau = 0 is APIC (Jiang et al. 2015), tau = infinity affine FLIP, and the
 step. The energy of a point's field is m/2 (v^2 + A:A D); for tau = infinity the transfers keep its sum, but for terms
 of the order of dt.
 
-In some steps the grid also returns to each point pressure, density and crowding of the material around it, which tie
-the volumes of points to one another; where the scene asks for it, points then also move down the gradient of crowding
-(`volumes`).
+In some steps the grid also returns to each point pressure, density and overfill of the material around it, which couple
+the volumes of points (`volume_coupling`); where the scene asks for it, points then also shift down the gradient of
+overfill.
 """
 
 from collections.abc import Callable
@@ -29,7 +29,7 @@ from grainlaw.materials.precision import PRECISIONS
 from grainlaw.materials.tensor import SymmetricTensor, shear_strain_rate
 from grainlaw.mpm_core.grid.grid import BULK, NEW_VX
 from grainlaw.mpm_core.kernels.g2p_nodes import make_gather
-from grainlaw.mpm_core.kernels.positions import place_access
+from grainlaw.mpm_core.kernels.positions import position_access
 from grainlaw.mpm_core.kernels.shape_functions import Basis
 from grainlaw.mpm_core.kernels.simd.arithmetic import (
     filled_like,
@@ -46,26 +46,26 @@ from grainlaw.mpm_core.kernels.simd.arithmetic import (
 from grainlaw.mpm_core.kernels.simd.registers import LANES, LANES_OF, put, several_at, transposed_at
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.kernels.stencil import GROUP, make_find_stencils
-from grainlaw.mpm_core.kernels.volume_coupling import spreading_rate
-from grainlaw.mpm_core.layout import AXX, AXY, AYX, AYY, CROWDING, LXX, LXY, LYX, LYY, MEAN_AROUND, SXX, SYY, VX, VY
+from grainlaw.mpm_core.kernels.volume_coupling import shifting_rate
+from grainlaw.mpm_core.layout import AXX, AXY, AYX, AYY, LXX, LXY, LYX, LYY, NEIGHBOUR_MEAN, OVERFILL, SXX, SYY, VX, VY
 from grainlaw.mpm_core.parallel.blocks import points_of_block
-from grainlaw.mpm_core.parallel.work_sharing import next_part, shares_of, threads_of
+from grainlaw.mpm_core.parallel.work_sharing import chunk_ranges, next_chunk, threads_of
 
-# What `grid_to_points` reports for each block of points.
+# What `g2p` reports for each block of points.
 KINETIC_ENERGY, LOWEST_X, HIGHEST_X, LOWEST_Y, HIGHEST_Y, MAX_SPEED, MOVED_X, MOVED_Y = range(8)
 REPORTS = 8
 
 
-class Receiving(NamedTuple):
-    """How the points of a group receive; per axis, what belongs to one node for the whole group side by side.
+class G2PStencils(NamedTuple):
+    """How the points of a group interpolate; per axis, what belongs to one node for the whole group side by side.
 
-    starts                number of the first node
+    first_nodes           number of the first node
     weights_x, weights_y  w
     slopes_x, slopes_y    w (i - f)/(h moment) [1/m], of which the moving-least-squares gradient is made
     moment_x, moment_y    second moments of the weights, in cells squared
     """
 
-    starts: Any
+    first_nodes: Any
     weights_x: Any
     weights_y: Any
     slopes_x: Any
@@ -74,10 +74,10 @@ class Receiving(NamedTuple):
     moment_y: Any
 
 
-class Gathered(NamedTuple):
-    """Four components that the points of a group receive, those of each point side by side, and their gradients.
+class Interpolated(NamedTuple):
+    """Four components of the nodes at the points of a group, those of each point side by side, and their gradients.
 
-    The components are new and old velocity, or the bulk: mass, crowding, pressure and density of the nodes around.
+    The components are new and old velocity, or the bulk: mass, overfill, pressure and density.
     """
 
     means: Any
@@ -140,16 +140,16 @@ def report(reports, block, point_mass, sums):  # type: ignore[no-untyped-def]
 
 
 @register_jitable(forceinline=True)
-def updated_affine(affine, gradient, p, new, old, memory):  # type: ignore[no-untyped-def]
+def updated_affine(affine, gradient, p, new, old, flip_fraction):  # type: ignore[no-untyped-def]
     """Store one component of L, and of A with what it remembers; returns the latter."""
     put(gradient, p, new)
-    value = scaled_sum(memory, several_at(affine, p) - old, new)
+    value = scaled_sum(flip_fraction, several_at(affine, p) - old, new)
     put(affine, p, value)
     return value
 
 
 @register_jitable(forceinline=True)
-def updated_gradients(rows, first, last, at_once, cell_size, memory, receiving, velocities, energies):  # type: ignore[no-untyped-def]
+def updated_gradients(rows, first, last, at_once, cell_size, flip_fraction, stencils, velocities, energies):  # type: ignore[no-untyped-def]
     """Update L and A of a group; `energies` receives A:A D of the points."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     axx, axy, ayx, ayy = rows[AXX], rows[AXY], rows[AYX], rows[AYY]
@@ -158,74 +158,78 @@ def updated_gradients(rows, first, last, at_once, cell_size, memory, receiving, 
         k = p - first
         new_xx, new_yx, old_xx, old_yx = transposed_at(velocities.gradients_x, k)
         new_xy, new_yy, old_xy, old_yy = transposed_at(velocities.gradients_y, k)
-        xx = updated_affine(axx, lxx, p, new_xx, old_xx, memory)
-        yx = updated_affine(ayx, lyx, p, new_yx, old_yx, memory)
-        xy = updated_affine(axy, lxy, p, new_xy, old_xy, memory)
-        yy = updated_affine(ayy, lyy, p, new_yy, old_yy, memory)
-        along_x = (xx * xx + yx * yx) * several_at(receiving.moment_x, k)
-        along_y = (xy * xy + yy * yy) * several_at(receiving.moment_y, k)
+        xx = updated_affine(axx, lxx, p, new_xx, old_xx, flip_fraction)
+        yx = updated_affine(ayx, lyx, p, new_yx, old_yx, flip_fraction)
+        xy = updated_affine(axy, lxy, p, new_xy, old_xy, flip_fraction)
+        yy = updated_affine(ayy, lyy, p, new_yy, old_yy, flip_fraction)
+        along_x = (xx * xx + yx * yx) * several_at(stencils.moment_x, k)
+        along_y = (xy * xy + yy * yy) * several_at(stencils.moment_y, k)
         put(energies, k, square * (along_x + along_y))
 
 
 @register_jitable(forceinline=True)
-def updated_surroundings(rows, first, last, at_once, bulk):  # type: ignore[no-untyped-def]
+def updated_neighbourhood(rows, first, last, at_once, bulk):  # type: ignore[no-untyped-def]
     """Update the averages of the material around a group."""
-    mean_around, crowding, sxx, syy = rows[MEAN_AROUND], rows[CROWDING], rows[SXX], rows[SYY]
+    neighbour_mean, overfill, sxx, syy = rows[NEIGHBOUR_MEAN], rows[OVERFILL], rows[SXX], rows[SYY]
     for p in range(first, last, at_once):
-        _, crowded, pressure, density = transposed_at(bulk.means, p - first)
-        put(crowding, p, crowded)
+        _, overfill_around, pressure, density = transposed_at(bulk.means, p - first)
+        put(overfill, p, overfill_around)
         without_sxx = where_equal(several_at(syy, p), 0.0, density, pressure)
-        put(mean_around, p, where_equal(several_at(sxx, p), 0.0, without_sxx, pressure))
+        put(neighbour_mean, p, where_equal(several_at(sxx, p), 0.0, without_sxx, pressure))
 
 
 @register_jitable(forceinline=True)
-def spread(rows, first, last, at_once, cell_size, dt, receiving, bulk, place_at, put_place):  # type: ignore[no-untyped-def]
-    """Move a group down the gradient of crowding, besides the motion of the material."""
+def shift_points(rows, first, last, at_once, cell_size, dt, stencils, bulk, position_at, put_position):  # type: ignore[no-untyped-def]
+    """Move a group down the gradient of overfill, besides the motion of the material."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     for p in range(first, last, at_once):
         k = p - first
         shear = 0.5 * (several_at(lxy, p) + several_at(lyx, p))
         shear_rate = shear_strain_rate(SymmetricTensor(several_at(lxx, p), several_at(lyy, p), 0.0, shear, 0.0, 0.0))
-        way = dt * cell_size * cell_size * spreading_rate(shear_rate, dt)
+        way = dt * cell_size * cell_size * shifting_rate(shear_rate, dt)
         _, slope_x, _, _ = transposed_at(bulk.gradients_x, k)
         _, slope_y, _, _ = transposed_at(bulk.gradients_y, k)
-        x, y = place_at(rows, p)
+        x, y = position_at(rows, p)
         way_x, way_y = (
-            way * several_at(receiving.moment_x, k) * slope_x,
-            way * several_at(receiving.moment_y, k) * slope_y,
+            way * several_at(stencils.moment_x, k) * slope_x,
+            way * several_at(stencils.moment_y, k) * slope_y,
         )
-        put_place(rows, p, x - widened(way_x), y - widened(way_y))
+        put_position(rows, p, x - widened(way_x), y - widened(way_y))
 
 
 @register_jitable(forceinline=True)
-def moved(rows, first, last, at_once, dt, memory, velocities, energies, sums, place_at, put_place):  # type: ignore[no-untyped-def]
-    """Update velocities and places of a group; returns the sums with it."""
+def advected(rows, first, last, at_once, dt, flip_fraction, velocities, energies, sums, position_at, put_position):  # type: ignore[no-untyped-def]
+    """Update velocities and positions of a group; returns the sums with it."""
     vx, vy = rows[VX], rows[VY]
     for p in range(first, last, at_once):
         new_vx, new_vy, old_vx, old_vy = transposed_at(velocities.means, p - first)
-        velocity_x = scaled_sum(memory, several_at(vx, p) - old_vx, new_vx)
-        velocity_y = scaled_sum(memory, several_at(vy, p) - old_vy, new_vy)
-        x, y = place_at(rows, p)
+        velocity_x = scaled_sum(flip_fraction, several_at(vx, p) - old_vx, new_vx)
+        velocity_y = scaled_sum(flip_fraction, several_at(vy, p) - old_vy, new_vy)
+        x, y = position_at(rows, p)
         moved_x, moved_y = widened(new_vx), widened(new_vy)
         new_x, new_y = scaled_sum(dt, moved_x, x), scaled_sum(dt, moved_y, y)
         put(vx, p, velocity_x)
         put(vy, p, velocity_y)
-        put_place(rows, p, new_x, new_y)
+        put_position(rows, p, new_x, new_y)
         twice_energy = velocity_x * velocity_x + velocity_y * velocity_y + several_at(energies, p - first)
         count = float(last - p)
         sums = added_to_sums(sums, widened(twice_energy), moved_x, moved_y, new_x, new_y, count, at_once)
     return sums
 
 
-def make_put_receiving(basis: Basis, precision: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Functions that make room for how a group receives, and store that of the points from p on that go at once."""
+def make_put_stencils(basis: Basis, precision: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Functions that allocate the stencils of a group, and store those of the points from p on that go at once."""
     width, find_stencils, number = basis.width, make_find_stencils(basis, precision), PRECISIONS[precision]
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{precision}_{CORE_MARK}")
-    def room_for_receiving():  # type: ignore[no-untyped-def]
-        starts, moments, per_node = np.empty(GROUP), np.empty((2, GROUP), number), np.empty((4, width * GROUP), number)
-        return Receiving(starts, per_node[0], per_node[1], per_node[2], per_node[3], moments[0], moments[1])
+    def stencil_buffers():  # type: ignore[no-untyped-def]
+        first_nodes, moments, per_node = (
+            np.empty(GROUP),
+            np.empty((2, GROUP), number),
+            np.empty((4, width * GROUP), number),
+        )
+        return G2PStencils(first_nodes, per_node[0], per_node[1], per_node[2], per_node[3], moments[0], moments[1])
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{precision}_{CORE_MARK}")
@@ -238,60 +242,77 @@ def make_put_receiving(basis: Basis, precision: str) -> tuple[Callable[..., Any]
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{precision}_{CORE_MARK}")
-    def put_receiving(rows, p, k, nodes_y, ghosts, origin, inverse_size, receiving):  # type: ignore[no-untyped-def]
-        starts, weights_x, weights_y, slopes_x, slopes_y, moment_x, moment_y = receiving
+    def put_stencils(rows, p, k, nodes_y, ghosts, origin, inverse_size, stencils):  # type: ignore[no-untyped-def]
+        first_nodes, weights_x, weights_y, slopes_x, slopes_y, moment_x, moment_y = stencils
         number, along_x, along_y = find_stencils(rows, p, nodes_y, ghosts, origin, inverse_size)
-        put(starts, k, number)
+        put(first_nodes, k, number)
         put_axis(k, along_x, inverse_size, weights_x, slopes_x, moment_x)
         put_axis(k, along_y, inverse_size, weights_y, slopes_y, moment_y)
 
-    return room_for_receiving, put_receiving
+    return stencil_buffers, put_stencils
 
 
 @cache
-def make_grid_to_points(basis: Basis, ties: bool, spreads: bool, precision: str) -> Callable[..., Any]:
-    """Give the points velocity, its gradient and, if `ties`, averages of the material around, and move them.
+def make_g2p(basis: Basis, couples: bool, shifts: bool, precision: str) -> Callable[..., Any]:
+    """Give the points velocity, its gradient and, if `couples`, averages of the material around, and move them.
 
-    With `spreads`, points also move down the gradient of crowding. `memory` is exp(-dt/tau). Reports per block of
-    points: kinetic energy [J/m], corners of the bounding box [m], the largest speed at which a point moves [m/s] and
+    With `shifts`, points also move down the gradient of overfill. `flip_fraction` is exp(-dt/tau). Reports per block
+    of points: kinetic energy [J/m], corners of the bounding box [m], the largest speed at which a point moves [m/s] and
     the momentum of that motion [kg/s].
     """
     gather_velocities = make_gather(basis, NEW_VX, True, precision)
-    gather_bulk = make_gather(basis, BULK, spreads, precision)
-    room_for_receiving, put_receiving = make_put_receiving(basis, precision)
-    rows_of_points, place_at, put_place, *_ = place_access(precision)
+    gather_bulk = make_gather(basis, BULK, shifts, precision)
+    stencil_buffers, put_stencils = make_put_stencils(basis, precision)
+    rows_of_points, position_at, put_position, *_ = position_access(precision)
     number, at_once = PRECISIONS[precision], LANES_OF[precision]
 
     @njit(parallel=True, error_model="numpy", cache=True)
-    @named(f"{basis.name}_{ties:d}{spreads:d}_{precision}_{CORE_MARK}")
-    def grid_to_points(  # type: ignore[no-untyped-def]
-        storage, count, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, memory, threads, reports
+    @named(f"{basis.name}_{couples:d}{shifts:d}_{precision}_{CORE_MARK}")
+    def g2p(  # type: ignore[no-untyped-def]
+        storage, count, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, flip_fraction, threads, reports
     ):
         rows, inverse_size = rows_of_points(storage), 1.0 / cell_size
-        shares = shares_of(reports.shape[0], threads)
-        for thread in prange(threads_of(shares)):
-            receiving, room = room_for_receiving(), np.empty((7, GROUP * LANES), number)
-            velocities, bulk = Gathered(room[0], room[1], room[2]), Gathered(room[3], room[4], room[5])
-            energies = room[6]
-            block = next_part(shares, thread)
+        ranges = chunk_ranges(reports.shape[0], threads)
+        for thread in prange(threads_of(ranges)):
+            stencils, buffers = stencil_buffers(), np.empty((7, GROUP * LANES), number)
+            velocities, bulk = (
+                Interpolated(buffers[0], buffers[1], buffers[2]),
+                Interpolated(buffers[3], buffers[4], buffers[5]),
+            )
+            energies = buffers[6]
+            block = next_chunk(ranges, thread)
             while block >= 0:
-                sums = no_sums(place_at(rows, np.uint64(0))[0])
+                sums = no_sums(position_at(rows, np.uint64(0))[0])
                 begin, end = points_of_block(block, reports.shape[0], count)
                 for start in range(begin, end, GROUP):
                     first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
                     for p in range(first, last, at_once):
-                        put_receiving(rows, p, p - first, nodes_y, ghosts, origin, inverse_size, receiving)
-                    gather_velocities(last - first, nodes, nodes_y, receiving, velocities)
-                    updated_gradients(rows, first, last, at_once, cell_size, memory, receiving, velocities, energies)
-                    if ties:
-                        gather_bulk(last - first, nodes, nodes_y, receiving, bulk)
-                        updated_surroundings(rows, first, last, at_once, bulk)
-                    sums = moved(
-                        rows, first, last, at_once, dt, memory, velocities, energies, sums, place_at, put_place
+                        put_stencils(rows, p, p - first, nodes_y, ghosts, origin, inverse_size, stencils)
+                    gather_velocities(last - first, nodes, nodes_y, stencils, velocities)
+                    updated_gradients(
+                        rows, first, last, at_once, cell_size, flip_fraction, stencils, velocities, energies
                     )
-                    if spreads:
-                        spread(rows, first, last, at_once, cell_size, dt, receiving, bulk, place_at, put_place)
+                    if couples:
+                        gather_bulk(last - first, nodes, nodes_y, stencils, bulk)
+                        updated_neighbourhood(rows, first, last, at_once, bulk)
+                    sums = advected(
+                        rows,
+                        first,
+                        last,
+                        at_once,
+                        dt,
+                        flip_fraction,
+                        velocities,
+                        energies,
+                        sums,
+                        position_at,
+                        put_position,
+                    )
+                    if shifts:
+                        shift_points(
+                            rows, first, last, at_once, cell_size, dt, stencils, bulk, position_at, put_position
+                        )
                 report(reports, block, point_mass, sums)
-                block = next_part(shares, thread)
+                block = next_chunk(ranges, thread)
 
-    return grid_to_points
+    return g2p

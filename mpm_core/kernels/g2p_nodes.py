@@ -1,4 +1,4 @@
-"""Gathering from the nodes of their stencils what points receive, four components of a node side by side."""
+"""Interpolating from the nodes of their stencils to points, four components of a node side by side."""
 
 from collections.abc import Callable
 from typing import Any
@@ -25,7 +25,7 @@ from grainlaw.mpm_core.kernels.stencil import GROUP
 
 
 def make_gather(basis: Basis, component: int, with_gradients: bool, precision: str) -> Callable[..., Any]:
-    """A function that fills what a group receives of four components of the nodes, and of their gradients.
+    """A function that interpolates four components of the nodes to a group, and their gradients.
 
     With gradients, a sum along y and its gradient go side by side.
     """
@@ -35,12 +35,12 @@ def make_gather(basis: Basis, component: int, with_gradients: bool, precision: s
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{component}_{with_gradients:d}_{precision}_{CORE_MARK}")
-    def gather(count, nodes, nodes_y, receiving, gathered):  # type: ignore[no-untyped-def]
-        starts, weights_x, weights_y, slopes_x, slopes_y, _, _ = receiving
-        means, gradients_x, gradients_y = gathered
+    def gather(count, nodes, nodes_y, stencils, interpolated):  # type: ignore[no-untyped-def]
+        first_nodes, weights_x, weights_y, slopes_x, slopes_y, _, _ = stencils
+        means, gradients_x, gradients_y = interpolated
         row_length = np.uint64(nodes_y * COMPONENTS)
         for k in range(count):
-            row = np.uint64(starts[k]) * np.uint64(COMPONENTS) + first_component
+            row = np.uint64(first_nodes[k]) * np.uint64(COMPONENTS) + first_component
             along_y = filled_like(0.0, values_at(nodes, row))
             gradient_x = first_half(along_y)
             for a in range(width):

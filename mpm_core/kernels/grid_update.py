@@ -6,12 +6,12 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from grainlaw.materials.compilation import named
-from grainlaw.mpm_core.grid.active_nodes import Reach
+from grainlaw.mpm_core.grid.active_nodes import ActiveNodes
 from grainlaw.mpm_core.grid.grid import (
     COMPONENTS,
     MASS,
-    NODE_CROWDING,
     NODE_DENSITY,
+    NODE_OVERFILL,
     NODE_PRESSURE,
     VOLUME,
     VOLUME_PRESSURE,
@@ -20,38 +20,40 @@ from grainlaw.mpm_core.grid.grid import (
 from grainlaw.mpm_core.kernels.simd.arithmetic import halves_joined, halves_swapped
 from grainlaw.mpm_core.kernels.simd.registers import put, quad_at
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
-from grainlaw.mpm_core.kernels.volume_coupling import crowding_of
+from grainlaw.mpm_core.kernels.volume_coupling import overfill_of
 
 
-def clear(nodes: NDArray[np.float64], grid: Grid, reach: Reach) -> None:
-    """Zero the nodes in reach, of the grid or of another array like its nodes."""
-    _clear(nodes, grid.shape[1], reach)
+def clear(nodes: NDArray[np.float64], grid: Grid, active: ActiveNodes) -> None:
+    """Zero the active nodes, of the grid or of another array like its nodes."""
+    _clear(nodes, grid.shape[1], active)
 
 
-def update_nodes(grid: Grid, reach: Reach, gravity: tuple[float, float], dt: float, ties: bool) -> None:
+def update_nodes(grid: Grid, active: ActiveNodes, gravity: tuple[float, float], dt: float, couples: bool) -> None:
     """Turn what was scattered into old velocity and new velocity v + dt (f/m + g) [m/s].
 
-    If `ties`, turn the volumes and pressures as well, into the averages of which `volumes` are tied.
+    If `couples`, turn the volumes and pressures as well, into the averages that `volume_coupling` takes.
     """
-    _update(grid.nodes, grid.shape[1], reach, gravity[0], gravity[1], dt, ties, *grid.rooms, grid.cell_size**2)
+    _update(
+        grid.nodes, grid.shape[1], active, gravity[0], gravity[1], dt, couples, *grid.node_widths, grid.cell_size**2
+    )
 
 
 @njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def _clear(nodes, nodes_y, reach):  # type: ignore[no-untyped-def]
-    for i in prange(reach.first_column, reach.last_column + 1):
-        if reach.last_rows[i] >= reach.first_rows[i]:
+def _clear(nodes, nodes_y, active):  # type: ignore[no-untyped-def]
+    for i in prange(active.first_column, active.last_column + 1):
+        if active.last_rows[i] >= active.first_rows[i]:
             row = i * nodes_y
-            nodes[(row + reach.first_rows[i]) * COMPONENTS : (row + reach.last_rows[i] + 1) * COMPONENTS] = 0.0
+            nodes[(row + active.first_rows[i]) * COMPONENTS : (row + active.last_rows[i] + 1) * COMPONENTS] = 0.0
 
 
 @njit(parallel=True, error_model="numpy", cache=True)
 @named(CORE_MARK)
-def _update(nodes, nodes_y, reach, gravity_x, gravity_y, dt, ties, rooms_x, rooms_y, cell):  # type: ignore[no-untyped-def]
+def _update(nodes, nodes_y, active, gravity_x, gravity_y, dt, couples, widths_x, widths_y, cell):  # type: ignore[no-untyped-def]
     impulse = np.array([dt * gravity_x, dt * gravity_y, 0.0, 0.0])
-    for i in prange(reach.first_column, reach.last_column + 1):
+    for i in prange(active.first_column, active.last_column + 1):
         fall = quad_at(impulse, 0)
-        for j in range(reach.first_rows[i], reach.last_rows[i] + 1):
+        for j in range(active.first_rows[i], active.last_rows[i] + 1):
             node = np.uint64((i * nodes_y + j) * COMPONENTS)
             mass = nodes[node + np.uint64(MASS)]
             if mass > 0.0:
@@ -59,14 +61,14 @@ def _update(nodes, nodes_y, reach, gravity_x, gravity_y, dt, ties, rooms_x, room
                 push_and_old = halves_swapped(old_and_push)
                 new = old_and_push + dt * push_and_old + fall
                 put(nodes, node, halves_joined(new, push_and_old))
-                if ties:
-                    _average(nodes, node, mass, cell * rooms_x[i] * rooms_y[j])
+                if couples:
+                    _average(nodes, node, mass, cell * widths_x[i] * widths_y[j])
 
 
 @register_jitable(forceinline=True)
-def _average(nodes, node, mass, room):  # type: ignore[no-untyped-def]
+def _average(nodes, node, mass, node_volume):  # type: ignore[no-untyped-def]
     volume = nodes[node + np.uint64(VOLUME)]
     per_volume = 1.0 / volume
-    nodes[node + np.uint64(NODE_CROWDING)] = crowding_of(volume, room)
+    nodes[node + np.uint64(NODE_OVERFILL)] = overfill_of(volume, node_volume)
     nodes[node + np.uint64(NODE_PRESSURE)] = nodes[node + np.uint64(VOLUME_PRESSURE)] * per_volume
     nodes[node + np.uint64(NODE_DENSITY)] = mass * per_volume

@@ -15,7 +15,7 @@ from grainlaw.materials.compilation import PointwiseLaw, named
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.materials.single_precision import adaptable, in_precision
 from grainlaw.materials.tensor import SymmetricTensor, added, isotropic
-from grainlaw.mpm_core.kernels.simd.loop import side_by_side
+from grainlaw.mpm_core.kernels.simd.loop import loop_over_points
 from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ, VX, VY
 
 
@@ -161,7 +161,7 @@ def _make_update(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
     @register_jitable
     @named(mark)
     def update(rows, first, last, ties, parameters, dt):  # type: ignore[no-untyped-def]
-        side_by_side(first, last, update_one, (rows, first, ties, parameter_class(*parameters), number(dt)))
+        loop_over_points(first, last, update_one, (rows, first, ties, parameter_class(*parameters), number(dt)))
 
     return update
 
@@ -187,7 +187,7 @@ def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: s
     @named(mark)
     def take_small_steps(rows, first, last, ties, parameters, dt, pending):  # type: ignore[no-untyped-def]
         arguments = rows, first, ties, parameter_class(*parameters), number(dt), pending
-        side_by_side(first, last, take_one, arguments)
+        loop_over_points(first, last, take_one, arguments)
 
     return take_small_steps
 

@@ -20,9 +20,9 @@ from grainlaw.mpm_core.kernels.stencil import GROUP
 
 
 @register_jitable(forceinline=True)
-def steps_at(steps, k):  # type: ignore[no-untyped-def]
+def increments_at(increments, k):  # type: ignore[no-untyped-def]
     """What a point adds from node to node along x and y, to all components of which half do not change."""
-    return half_oct_at(steps, COMPONENTS * k), half_oct_at(steps, COMPONENTS * k + np.uint64(LANES))
+    return half_oct_at(increments, COMPONENTS * k), half_oct_at(increments, COMPONENTS * k + np.uint64(LANES))
 
 
 def make_scatter_one(basis: Basis) -> Callable[..., Any]:
@@ -31,18 +31,18 @@ def make_scatter_one(basis: Basis) -> Callable[..., Any]:
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{CORE_MARK}")
-    def scatter_one(row, row_length, k, nodes, bringing):  # type: ignore[no-untyped-def]
-        _, weights, brought, steps = bringing
-        at_row = oct_at(brought, COMPONENTS * k)
-        step_x, step_y = steps_at(steps, k)
+    def scatter_one(row, row_length, k, nodes, contributions):  # type: ignore[no-untyped-def]
+        _, weights, values, increments = contributions
+        at_row = oct_at(values, COMPONENTS * k)
+        increment_x, increment_y = increments_at(increments, k)
         for a in range(width):
             at_node = at_row
             for b in range(width):
                 node = row + np.uint64(b * COMPONENTS)
                 weight = weights[np.uint64((a * width + b) * GROUP) + k]
                 put(nodes, node, scaled_sum(weight, at_node, oct_at(nodes, node)))
-                at_node = at_node + step_y
-            at_row = at_row + step_x
+                at_node = at_node + increment_y
+            at_row = at_row + increment_x
             row += row_length
 
     return scatter_one
@@ -54,20 +54,20 @@ def make_scatter_two(basis: Basis) -> Callable[..., Any]:
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{CORE_MARK}")
-    def scatter_two(row, row_length, k, nodes, bringing):  # type: ignore[no-untyped-def]
-        _, weights, brought, steps = bringing
+    def scatter_two(row, row_length, k, nodes, contributions):  # type: ignore[no-untyped-def]
+        _, weights, values, increments = contributions
         m = k + np.uint64(1)
-        at_row, at_row_2 = oct_at(brought, COMPONENTS * k), oct_at(brought, COMPONENTS * m)
-        step_x, step_y = steps_at(steps, k)
-        step_x_2, step_y_2 = steps_at(steps, m)
+        at_row, at_row_2 = oct_at(values, COMPONENTS * k), oct_at(values, COMPONENTS * m)
+        increment_x, increment_y = increments_at(increments, k)
+        increment_x_2, increment_y_2 = increments_at(increments, m)
         for a in range(width):
             at_node, at_node_2 = at_row, at_row_2
             for b in range(width):
                 node, first = row + np.uint64(b * COMPONENTS), np.uint64((a * width + b) * GROUP)
                 with_one = scaled_sum(weights[first + k], at_node, oct_at(nodes, node))
                 put(nodes, node, scaled_sum(weights[first + m], at_node_2, with_one))
-                at_node, at_node_2 = at_node + step_y, at_node_2 + step_y_2
-            at_row, at_row_2 = at_row + step_x, at_row_2 + step_x_2
+                at_node, at_node_2 = at_node + increment_y, at_node_2 + increment_y_2
+            at_row, at_row_2 = at_row + increment_x, at_row_2 + increment_x_2
             row += row_length
 
     return scatter_two
@@ -79,16 +79,16 @@ def make_scatter(basis: Basis) -> Callable[..., Any]:
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{CORE_MARK}")
-    def scatter(count, nodes, nodes_y, bringing):  # type: ignore[no-untyped-def]
-        starts, row_length = bringing.starts, np.uint64(nodes_y * COMPONENTS)
+    def scatter(count, nodes, nodes_y, contributions):  # type: ignore[no-untyped-def]
+        first_nodes, row_length = contributions.first_nodes, np.uint64(nodes_y * COMPONENTS)
         k = np.uint64(0)
         while k < count:
-            row = np.uint64(starts[k]) * np.uint64(COMPONENTS)
-            if k + np.uint64(1) < count and starts[k + np.uint64(1)] == starts[k]:
-                scatter_two(row, row_length, k, nodes, bringing)
+            row = np.uint64(first_nodes[k]) * np.uint64(COMPONENTS)
+            if k + np.uint64(1) < count and first_nodes[k + np.uint64(1)] == first_nodes[k]:
+                scatter_two(row, row_length, k, nodes, contributions)
                 k += np.uint64(2)
             else:
-                scatter_one(row, row_length, k, nodes, bringing)
+                scatter_one(row, row_length, k, nodes, contributions)
                 k += np.uint64(1)
 
     return scatter

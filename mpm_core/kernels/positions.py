@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from grainlaw.mpm_core.kernels.rows import OF_EVERY_LAW, rows_of
 from grainlaw.mpm_core.kernels.simd.arithmetic import narrowed, widened
 from grainlaw.mpm_core.kernels.simd.registers import put, several_at
-from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, REST_DENSITY, REST_X, REST_Y, X, Y
+from grainlaw.mpm_core.layout import DENSITY, DENSITY_REMAINDER, FIRST_STATE, X_REMAINDER, Y_REMAINDER, X, Y
 
-# Where `PlaceAccess.rows` hands on the rows at the end.
+# Where `PositionAccess.rows` hands on the rows at the end.
 _FOUND_X, _FOUND_Y = FIRST_STATE, FIRST_STATE + 1
 
 
@@ -26,14 +26,20 @@ def coordinate_of(points: NDArray[Any], axis: int) -> NDArray[np.float64]:
     coordinate: NDArray[Any] = points[(X, Y)[axis]]
     if points.dtype == np.float64:
         return coordinate
-    return coordinate.astype(np.float64) + points[(REST_X, REST_Y)[axis]]
+    return coordinate.astype(np.float64) + points[(X_REMAINDER, Y_REMAINDER)[axis]]
 
 
 def positions_of(points: NDArray[Any]) -> NDArray[np.float64]:
-    """Coordinates of points in double precision, shape (2, n) [m]; a view where that is how they are stored."""
+    """Coordinates of points in double precision, shape (2, n) [m].
+
+    A view where that is how they are stored, else a copy that cannot be written to.
+    """
     if points.dtype == np.float64:
         return points[X : Y + 1]
-    return np.stack([coordinate_of(points, axis) for axis in (0, 1)])
+    positions = np.stack([coordinate_of(points, axis) for axis in (0, 1)])
+    # Writing to a copy would move no point.
+    positions.setflags(write=False)
+    return positions
 
 
 def put_coordinate(points: NDArray[Any], axis: int, coordinate: NDArray[np.float64]) -> None:
@@ -41,7 +47,7 @@ def put_coordinate(points: NDArray[Any], axis: int, coordinate: NDArray[np.float
     row = (X, Y)[axis]
     points[row] = coordinate
     if points.dtype == np.float32:
-        points[(REST_X, REST_Y)[axis]] = coordinate - points[row]
+        points[(X_REMAINDER, Y_REMAINDER)[axis]] = coordinate - points[row]
 
 
 def put_positions(points: NDArray[Any], positions: NDArray[np.float64]) -> None:
@@ -54,16 +60,16 @@ def put_density(points: NDArray[Any], density: float) -> None:
     """Give all points a density [kg/m3]."""
     points[DENSITY] = density
     if points.dtype == np.float32:
-        points[REST_DENSITY] = density - float(points[DENSITY, 0])
+        points[DENSITY_REMAINDER] = density - float(points[DENSITY, 0])
 
 
 def density_of_first(points: NDArray[Any]) -> float:
     """The density of the first point in double precision [kg/m3]."""
-    rest = float(points[REST_DENSITY, 0]) if points.dtype == np.float32 else 0.0
+    rest = float(points[DENSITY_REMAINDER, 0]) if points.dtype == np.float32 else 0.0
     return float(points[DENSITY, 0]) + rest
 
 
-class PlaceAccess(NamedTuple):
+class PositionAccess(NamedTuple):
     """What compiled code reads and stores places with.
 
     rows     (storage) -> the rows that every law has, and those that `at` and `put` need
@@ -81,11 +87,11 @@ class PlaceAccess(NamedTuple):
 
 
 @cache
-def place_access(precision: str) -> PlaceAccess:
+def position_access(precision: str) -> PositionAccess:
     """The access for points in a precision."""
     if precision == "double":
-        return PlaceAccess(_all_rows, _at, _put, _along, _density)
-    return PlaceAccess(_rows_and_rests, _at_both, _put_both, _along_both, _density_both)
+        return PositionAccess(_all_rows, _at, _put, _along, _density)
+    return PositionAccess(_rows_and_remainders, _at_both, _put_both, _along_both, _density_both)
 
 
 @register_jitable(forceinline=True)
@@ -105,8 +111,8 @@ def _put(rows, p, x, y):  # type: ignore[no-untyped-def]
 
 
 @register_jitable(forceinline=True)
-def _rows_and_rests(storage):  # type: ignore[no-untyped-def]
-    return (*rows_of(storage, OF_EVERY_LAW), storage[REST_X], storage[REST_Y])
+def _rows_and_remainders(storage):  # type: ignore[no-untyped-def]
+    return (*rows_of(storage, OF_EVERY_LAW), storage[X_REMAINDER], storage[Y_REMAINDER])
 
 
 @register_jitable(forceinline=True)
@@ -131,7 +137,7 @@ def _along(storage, axis, p):  # type: ignore[no-untyped-def]
 
 @register_jitable(forceinline=True)
 def _along_both(storage, axis, p):  # type: ignore[no-untyped-def]
-    return np.float64(storage[axis, p]) + storage[REST_X + axis, p]
+    return np.float64(storage[axis, p]) + storage[X_REMAINDER + axis, p]
 
 
 @register_jitable(forceinline=True)
@@ -141,4 +147,4 @@ def _density(storage, p):  # type: ignore[no-untyped-def]
 
 @register_jitable(forceinline=True)
 def _density_both(storage, p):  # type: ignore[no-untyped-def]
-    return np.float64(storage[DENSITY, p]) + storage[REST_DENSITY, p]
+    return np.float64(storage[DENSITY, p]) + storage[DENSITY_REMAINDER, p]

@@ -38,7 +38,7 @@ class Basis:
     moment        second moment of the weights about the point
     lower_wall    weights where the first node is a ghost
     upper_wall    weights where the last node is a ghost
-    wall_room     the part of a cell that the changed weights leave to the node at a wall, their integral
+    wall_node_fraction     the part of a cell that the changed weights leave to the node at a wall, their integral
     """
 
     name: str
@@ -48,7 +48,7 @@ class Basis:
     moment: Callable[[float], float]
     lower_wall: Callable[..., tuple[float, ...]]
     upper_wall: Callable[..., tuple[float, ...]]
-    wall_room: float
+    wall_node_fraction: float
 
 
 @register_jitable

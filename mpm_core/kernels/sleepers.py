@@ -14,23 +14,23 @@ RING = 3
 
 @njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def copy_nodes(source, target, nodes_y, reach):  # type: ignore[no-untyped-def]
-    """Copy the nodes in reach."""
-    for i in prange(reach.first_column, reach.last_column + 1):
-        if reach.last_rows[i] >= reach.first_rows[i]:
+def copy_nodes(source, target, nodes_y, active):  # type: ignore[no-untyped-def]
+    """Copy the active nodes."""
+    for i in prange(active.first_column, active.last_column + 1):
+        if active.last_rows[i] >= active.first_rows[i]:
             first, last = (
-                (i * nodes_y + reach.first_rows[i]) * COMPONENTS,
-                (i * nodes_y + reach.last_rows[i] + 1) * COMPONENTS,
+                (i * nodes_y + active.first_rows[i]) * COMPONENTS,
+                (i * nodes_y + active.last_rows[i] + 1) * COMPONENTS,
             )
             target[first:last] = source[first:last]
 
 
 @njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def hold_sleepers(nodes, asleep, withheld, reach):  # type: ignore[no-untyped-def]
+def hold_sleepers(nodes, asleep, withheld, active):  # type: ignore[no-untyped-def]
     """Hold the nodes with sleeping mass, and sum up the momentum that is withheld from them."""
-    for i in prange(reach.first_column, reach.last_column + 1):
-        for j in range(reach.first_rows[i], reach.last_rows[i] + 1):
+    for i in prange(active.first_column, active.last_column + 1):
+        for j in range(active.first_rows[i], active.last_rows[i] + 1):
             node = (i * withheld.shape[1] + j) * COMPONENTS
             if asleep[node + MASS] > 0.0:
                 withheld[i, j, 0] += nodes[node + MASS] * nodes[node + NEW_VX]
@@ -40,11 +40,11 @@ def hold_sleepers(nodes, asleep, withheld, reach):  # type: ignore[no-untyped-de
 
 @njit(cache=True)
 @named(CORE_MARK)
-def stir_nodes(withheld, waking_squared, reach, stirred):  # type: ignore[no-untyped-def]
+def stir_nodes(withheld, waking_squared, active, stirred):  # type: ignore[no-untyped-def]
     """Mark what is around the nodes from which too much is withheld; returns whether there are any."""
     found = False
-    for i in range(reach.first_column, reach.last_column + 1):
-        for j in range(reach.first_rows[i], reach.last_rows[i] + 1):
+    for i in range(active.first_column, active.last_column + 1):
+        for j in range(active.first_rows[i], active.last_rows[i] + 1):
             if withheld[i, j, 0] ** 2 + withheld[i, j, 1] ** 2 > waking_squared:
                 stirred[max(0, i - RING) : i + RING + 1, max(0, j - RING) : j + RING + 1] = True
                 found = True

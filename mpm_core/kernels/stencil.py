@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from numba.extending import register_jitable
 
 from grainlaw.materials.compilation import named
-from grainlaw.mpm_core.kernels.positions import place_access
+from grainlaw.mpm_core.kernels.positions import position_access
 from grainlaw.mpm_core.kernels.shape_functions import Basis, make_stencil
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 
@@ -36,12 +36,12 @@ def make_find_stencils(basis: Basis, precision: str) -> Callable[..., Any]:
 
     The precision is that of the points.
     """
-    stencil, place_at = make_stencil(basis, precision), place_access(precision).at
+    stencil, position_at = make_stencil(basis, precision), position_access(precision).at
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{precision}_{CORE_MARK}")
     def find_stencils(rows, p, nodes_y, ghosts, origin, inverse_size):  # type: ignore[no-untyped-def]
-        x, y = place_at(rows, p)
+        x, y = position_at(rows, p)
         i, fx, wx, moment_x, per_moment_x = stencil((x - origin[0]) * inverse_size, ghosts[0], ghosts[1])
         j, fy, wy, moment_y, per_moment_y = stencil((y - origin[1]) * inverse_size, ghosts[2], ghosts[3])
         return i * nodes_y + j, Axis(fx, wx, moment_x, per_moment_x), Axis(fy, wy, moment_y, per_moment_y)

@@ -3,7 +3,7 @@
 For each point: rotate the stress with the material (exact rotation by the increment of spin),
 bring the density to the end of the step (midpoint rule for d ln rho = -tr D dt), call the law.
 
-Loose grains take on a strain besides that of the motion, which ties the volumes of points to one another (`volumes`).
+Loose grains take on a strain besides that of the motion, which couples the volumes of points (`volume_coupling`).
 """
 
 from collections.abc import Callable
@@ -29,24 +29,29 @@ from grainlaw.mpm_core.kernels.rows import rows_of
 from grainlaw.mpm_core.kernels.simd.arithmetic import filled, first_lanes, total
 from grainlaw.mpm_core.kernels.simd.registers import LANES, quad_at
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
-from grainlaw.mpm_core.kernels.volume_coupling import SQUEEZE, closing_strain, evening_share, evening_strain
+from grainlaw.mpm_core.kernels.volume_coupling import (
+    OVERFILL_COMPRESSION,
+    closing_strain,
+    smoothing_share,
+    smoothing_strain,
+)
 from grainlaw.mpm_core.layout import (
-    CROWDING,
     DENSITY,
+    DENSITY_REMAINDER,
     FIRST_STATE,
     LXX,
     LXY,
     LYX,
     LYY,
-    MEAN_AROUND,
-    REST_DENSITY,
+    NEIGHBOUR_MEAN,
+    OVERFILL,
     SXX,
     SXY,
     SYY,
     SZZ,
 )
 from grainlaw.mpm_core.parallel.blocks import points_of_block
-from grainlaw.mpm_core.parallel.work_sharing import next_part, shares_of, threads_of
+from grainlaw.mpm_core.parallel.work_sharing import chunk_ranges, next_chunk, threads_of
 
 # Points that go through the parts of the pass together; they stay in the nearest cache.
 GROUP = 512
@@ -74,38 +79,40 @@ def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
 
 
 @adaptable
-def tie_volumes(rows, first, last, duration, exchange, stiffness, ties):  # type: ignore[no-untyped-def]
-    """The compressive strain that ties the volumes of points to one another for a time [s], into `ties`."""
+def couple_volumes(rows, first, last, duration, exchange, stiffness, coupling):  # type: ignore[no-untyped-def]
+    """The compressive strain that couples the volumes of points for a time [s], into `coupling`."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     sxx, syy, szz = rows[SXX], rows[SYY], rows[SZZ]
-    density, mean_around, crowding = rows[DENSITY], rows[MEAN_AROUND], rows[CROWDING]
+    density, neighbour_mean, overfill = rows[DENSITY], rows[NEIGHBOUR_MEAN], rows[OVERFILL]
     for p in range(first, last):
         motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
         shear_rate = shear_strain_rate(motion)
-        share = evening_share(shear_rate, exchange)
+        share = smoothing_share(shear_rate, exchange)
         pressure = (sxx[p] + syy[p] + szz[p]) * -THIRD
-        evening = evening_strain(pressure, mean_around[p], stiffness[p - first], share)
-        closing = closing_strain(density[p], mean_around[p], share)
+        smoothing = smoothing_strain(pressure, neighbour_mean[p], stiffness[p - first], share)
+        closing = closing_strain(density[p], neighbour_mean[p], share)
         has_contact = sxx[p] != 0.0 or syy[p] != 0.0
-        ties[p - first] = (evening if has_contact else closing) + SQUEEZE * duration * shear_rate * crowding[p]
+        coupling[p - first] = (
+            smoothing if has_contact else closing
+        ) + OVERFILL_COMPRESSION * duration * shear_rate * overfill[p]
 
 
 @adaptable
-def bring_forward(rows, first, last, dt, ties, room, rest):  # type: ignore[no-untyped-def]
+def bring_forward(rows, first, last, dt, coupling, buffers, remainder):  # type: ignore[no-untyped-def]
     """Rotate the stress and bring the density to the end of the step; returns the largest volumetric increment.
 
-    `ties` are compressive strains besides those of the motion. The room receives the power of the old stress over mass,
-    and the new volume over mass. In single precision `rest` is what singles leave out of the densities: slow strains
-    change a density by less than its rounding in a step, and would be lost.
+    `coupling` are compressive strains besides those of the motion. The buffers receive the power of the old stress over
+    mass, and the new volume over mass. In single precision `remainder` is what singles leave out of the densities: slow
+    strains change a density by less than its rounding in a step, and would be lost.
     """
-    works, volumes = room
+    works, volumes = buffers
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
     density = rows[DENSITY]
     largest = np.int64(0)
     for p in range(first, last):
         motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-        half_increment = 0.5 * (dt * trace(motion) - ties[p - first])
+        half_increment = 0.5 * (dt * trace(motion) - coupling[p - first])
         xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
         # rho (1 - h)/(1 + h), and both volumes, from a single division
         grown, shrunk = 1.0 + half_increment, 1.0 - half_increment
@@ -116,26 +123,26 @@ def bring_forward(rows, first, last, dt, ties, room, rest):  # type: ignore[no-u
         sxx[p], syy[p], sxy[p] = xx, yy, xy
         # by which the density changes from rho to rho (1 - h)/(1 + h)
         scale, strain = density[p] * (density[p] * shrunk * inverse), -2.0 * half_increment
-        if rest is None:
+        if remainder is None:
             density[p] = fused(strain, scale, density[p])
         else:
-            change = fused(strain, scale, rest[p])
+            change = fused(strain, scale, remainder[p])
             new = density[p] + change
-            rest[p] = change - (new - density[p])
+            remainder[p] = change - (new - density[p])
             density[p] = new
         largest = max(largest, ordered_bits(abs(2.0 * half_increment)))
     return largest
 
 
 @register_jitable
-def no_rest(storage):  # type: ignore[no-untyped-def]
+def no_remainder(storage):  # type: ignore[no-untyped-def]
     """Doubles leave nothing out."""
 
 
 @register_jitable
-def rest_in_single(storage):  # type: ignore[no-untyped-def]
+def remainder_in_single(storage):  # type: ignore[no-untyped-def]
     """What singles leave out of the densities."""
-    return storage[REST_DENSITY]
+    return storage[DENSITY_REMAINDER]
 
 
 def make_accumulate_shear_strain(row: int | None, mark: str) -> Callable[..., Any]:
@@ -160,14 +167,14 @@ def no_shear_strain(rows, first, last, dt):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
-def work_done(rows, first, last, room):  # type: ignore[no-untyped-def]
+def work_done(rows, first, last, buffers):  # type: ignore[no-untyped-def]
     """The mean of the powers of the old and the new stress over mass, summed over the points [W/kg].
 
     In four sums side by side: an addition waits for the one before it.
     """
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
     sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
-    works, volumes = room
+    works, volumes = buffers
     sums = filled(0.0)
     for p in range(first, last, LANES):
         k = p - first
@@ -182,8 +189,8 @@ def work_done(rows, first, last, room):  # type: ignore[no-untyped-def]
 def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str) -> Callable[..., Any]:
     """The stress pass of a law; it takes the law's parameters as a plain tuple. The precision is that of the points.
 
-    It ties the volumes of the points for a time `tied` [s], zero for not in this step; `exchange` is that time over the
-    time constant of the transfer. Reports per block of points: the largest signal speed c + |v| [m/s], the work of the
+    It couples the volumes of the points for a time `coupled_time` [s], zero for not in this step; `exchange` is that
+    time over the FLIP blend time. Reports per block of points: the largest signal speed c + |v| [m/s], the work of the
     stress on the strain [J/m], and the largest volumetric strain increment of the step. Where anything is not finite,
     the last one is NaN.
     """
@@ -194,36 +201,36 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str
     all_rows = (0.0,) * (after_state + keeps_shear_strain)
     shear_strain = make_accumulate_shear_strain(after_state if keeps_shear_strain else None, mark)
     accumulate = in_precision(shear_strain, precision)
-    rest_of_density = rest_in_single if precision == "single" else no_rest
-    forward, tie = in_precision(bring_forward, precision), in_precision(tie_volumes, precision)
+    density_remainder = remainder_in_single if precision == "single" else no_remainder
+    forward, couple = in_precision(bring_forward, precision), in_precision(couple_volumes, precision)
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(mark)
     def stress_pass(  # type: ignore[no-untyped-def]
-        storage, count, point_mass, parameters, dt, tied, exchange, threads, reports
+        storage, count, point_mass, parameters, dt, coupled_time, exchange, threads, reports
     ):
-        rows, shares = rows_of(storage, all_rows), shares_of(reports.shape[0], threads)
-        for thread in prange(threads_of(shares)):
+        rows, ranges = rows_of(storage, all_rows), chunk_ranges(reports.shape[0], threads)
+        for thread in prange(threads_of(ranges)):
             arrays, step = np.zeros((3, GROUP), number), number(dt)
-            ties, stiffness, room = arrays[0], arrays[1], (arrays[1], arrays[2])
-            block = next_part(shares, thread)
+            coupling, stiffness, buffers = arrays[0], arrays[1], (arrays[1], arrays[2])
+            block = next_chunk(ranges, thread)
             while block >= 0:
                 fastest, largest, work = np.int64(0), np.int64(0), 0.0
                 begin, end = points_of_block(block, reports.shape[0], count)
                 for start in range(begin, end, GROUP):
                     first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
-                    if tied > 0.0:
+                    if coupled_time > 0.0:
                         find_stiffness(rows, first, last, parameters, stiffness)
-                        tie(rows, first, last, number(tied), number(exchange), stiffness, ties)
+                        couple(rows, first, last, number(coupled_time), number(exchange), stiffness, coupling)
                     accumulate(rows, first, last, step)
-                    increment = forward(rows, first, last, step, ties, room, rest_of_density(storage))
-                    apply_law(rows, first, last, ties, parameters, dt)
+                    increment = forward(rows, first, last, step, coupling, buffers, density_remainder(storage))
+                    apply_law(rows, first, last, coupling, parameters, dt)
                     speed = largest_signal_speed(rows, first, last, parameters)
-                    work += work_done(rows, first, last, room)
+                    work += work_done(rows, first, last, buffers)
                     fastest, largest = max(fastest, speed), max(largest, increment)
                 reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
                 reports[block, INTERNAL_WORK] = point_mass * dt * work
                 reports[block, MAX_INCREMENT] = np.int64(largest).view(np.float64)
-                block = next_part(shares, thread)
+                block = next_chunk(ranges, thread)
 
     return stress_pass

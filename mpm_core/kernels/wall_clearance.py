@@ -1,8 +1,8 @@
-"""The gap between a friction wall and the material that comes down on it.
+"""The clearance between a friction wall and the material that comes down on it.
 
 A friction wall is unilateral. Contact begins when the edge of the material is at the wall, not when the shape function
-of the wall row first reaches a point, up to a cell and a half before. The gap of a node on the wall is that of the
-nearest material in its support,
+of the wall row first reaches a point, up to a cell and a half before. The clearance of a node on the wall is that of
+the nearest material in its support,
 
     g_i = min over the points p with w_i(x_p) > 0 of max(0, d_p - s_p/2),   s_p = sqrt(min(V_p, V_0)),
 
@@ -28,7 +28,7 @@ from grainlaw.materials.compilation import named
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.grid.active_nodes import DRIFT
 from grainlaw.mpm_core.grid.grid import Grid
-from grainlaw.mpm_core.kernels.positions import coordinate_of, place_access
+from grainlaw.mpm_core.kernels.positions import coordinate_of, position_access
 from grainlaw.mpm_core.kernels.shape_functions import Basis
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.kernels.walls import WallKind
@@ -37,10 +37,10 @@ from grainlaw.mpm_core.kernels.walls import WallKind
 ROUND_OFF = 1e-9
 
 
-class Contact:
+class WallClearance:
     """The points that may come into the support of the rows of friction walls before the next sort.
 
-    `rows` are those of walls (`boundary.HELD_ROW`). Threads share the points: each finds the gaps to its own.
+    `rows` are those of walls (`boundary.HELD_ROW`). Threads share the points: each finds the clearances to its own.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class Contact:
         self.basis = basis
         self.joined = [int(row) for row in np.flatnonzero(np.isin(1 - rows["axis"], periodic_axes))]
         self.near = [self._near(body) for body in bodies]
-        self._gaps_of_threads = np.empty((threads, len(rows), max(grid.shape)))
+        self._clearances_of_threads = np.empty((threads, len(rows), max(grid.shape)))
 
     def _near(self, body: Body) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Numbers of the points of a body that are near each row, row after row, and where those of each row begin."""
@@ -67,15 +67,16 @@ class Contact:
         return np.concatenate([nothing, *found]), np.cumsum([0, *map(len, found)])
 
     def _near_row(self, body: Body, row: np.void) -> NDArray[np.int64]:
-        away = np.abs(coordinate_of(body.points, row["axis"]) - row["place"])
+        away = np.abs(coordinate_of(body.points, row["axis"]) - row["position"])
         return np.flatnonzero(away < (0.5 * self.basis.width + DRIFT) * self.grid.cell_size)
 
-    def gaps(self) -> NDArray[np.float64]:
-        """The gap [m] of each node along each row; infinite where no point is in its support, or no gap is asked for.
+    def clearances(self) -> NDArray[np.float64]:
+        """The clearance [m] of each node along each row.
 
-        One array for all steps, shape (rows, nodes along the longer side of the grid).
+        It is infinite where no point is in the support of the node, or no clearance is asked for. One array for all
+        steps, shape (rows, nodes along the longer side of the grid).
         """
-        of_threads, grid, basis = self._gaps_of_threads, self.grid, self.basis
+        of_threads, grid, basis = self._clearances_of_threads, self.grid, self.basis
         of_threads.fill(math.inf)
         for body, (near, starts) in zip(self.bodies, self.near, strict=True):
             if len(near) > 0:
@@ -83,22 +84,22 @@ class Contact:
                 points = body.storage, body.point_mass, body.initial_density
                 on_grid = grid.origin, grid.cell_size, basis.offset, basis.width
                 narrow(near, starts, self.rows, *points, *on_grid, of_threads)
-        gaps: NDArray[np.float64] = of_threads[0]
+        clearances: NDArray[np.float64] = of_threads[0]
         for number in self.joined:
-            self._join(gaps[number], 1 - int(self.rows[number]["axis"]))
-        return gaps
+            self._join(clearances[number], 1 - int(self.rows[number]["axis"]))
+        return clearances
 
-    def _join(self, gaps: NDArray[np.float64], along: int) -> None:
-        """Give nodes that are one and the same across a periodic axis the least of their gaps."""
+    def _join(self, clearances: NDArray[np.float64], along: int) -> None:
+        """Give nodes that are one and the same across a periodic axis the least of their clearances."""
         nodes, cells = self.grid.shape[along], self.grid.cells[along]
-        first, last = gaps[: nodes - cells], gaps[cells:nodes]
+        first, last = clearances[: nodes - cells], clearances[cells:nodes]
         first[:] = last[:] = np.minimum(first, last)
 
 
 @cache
 def _make_narrow(precision: str) -> Callable[..., Any]:
-    """A kernel that narrows the gaps along the rows to those of points in a precision; the first thread's hold all."""
-    *_, along, density = place_access(precision)
+    """A kernel that narrows clearances along rows to those of points in a precision; the first thread's hold all."""
+    *_, along, density = position_access(precision)
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{precision}_{CORE_MARK}")
@@ -109,17 +110,17 @@ def _make_narrow(precision: str) -> Callable[..., Any]:
         farthest, nothing = 0.5 * width * cell_size, ROUND_OFF * cell_size
         for thread in prange(threads):
             for number in range(len(rows)):
-                axis, place, nodes = rows[number].axis, rows[number].place, of_threads[thread, number]
+                axis, position, nodes = rows[number].axis, rows[number].position, of_threads[thread, number]
                 start, count = starts[number], starts[number + 1] - starts[number]
                 for p in near[start + count * thread // threads : start + count * (thread + 1) // threads]:
-                    distance = abs(along(storage, axis, p) - place)
+                    distance = abs(along(storage, axis, p) - position)
                     if distance < farthest:
                         beyond = along(storage, 1 - axis, p) - origin[1 - axis]
                         first = min(int(beyond * inverse_size - offset), last_first)
-                        gap = distance - 0.5 * np.sqrt(mass / max(density(storage, p), least_density))
-                        gap = gap if gap > nothing else 0.0
+                        clearance = distance - 0.5 * np.sqrt(mass / max(density(storage, p), least_density))
+                        clearance = clearance if clearance > nothing else 0.0
                         for node in range(first, first + width):
-                            nodes[node] = min(nodes[node], gap)
+                            nodes[node] = min(nodes[node], clearance)
         for thread in range(1, threads):
             np.minimum(of_threads[0], of_threads[thread], of_threads[0])
 

@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from grainlaw.materials.compilation import named
-from grainlaw.mpm_core.grid.active_nodes import Reach
+from grainlaw.mpm_core.grid.active_nodes import ActiveNodes
 from grainlaw.mpm_core.grid.grid import COMPONENTS, GHOSTS, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, Grid
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 
@@ -63,14 +63,14 @@ class TakenByWalls(NamedTuple):
     friction: float
 
 
-# A wall to compiled code: what it does, where it lies [m], and which of its row of nodes are in reach: the number along
+# A wall to compiled code: what it does, where it lies [m], and which of its row of nodes are active: the number along
 # the wall of the first one and of all, where the first one is in `Grid.nodes`, and how far it is to the next.
 HELD_ROW = np.dtype(
     [
         ("kind", np.int64),
         ("axis", np.int64),
         ("sign", np.float64),
-        ("place", np.float64),
+        ("position", np.float64),
         ("coefficient", np.float64),
         ("velocity", np.float64),
         ("first", np.int64),
@@ -81,9 +81,9 @@ HELD_ROW = np.dtype(
 )
 
 
-def rows_in_reach(walls: Sequence[Wall], grid: Grid, reach: Reach) -> NDArray[np.void]:
-    """The rows of nodes in reach of those walls that have any, as `HELD_ROW`."""
-    rows = [_held_row(wall, grid, reach) for wall in walls if _is_in_reach(wall, grid, reach)]
+def active_rows(walls: Sequence[Wall], grid: Grid, active: ActiveNodes) -> NDArray[np.void]:
+    """The active rows of nodes of those walls that have any, as `HELD_ROW`."""
+    rows = [_held_row(wall, grid, active) for wall in walls if _is_active(wall, grid, active)]
     return np.array(rows, HELD_ROW)
 
 
@@ -91,34 +91,34 @@ def _row_of_wall(wall: Wall, grid: Grid) -> int:
     return GHOSTS if wall.is_lower else grid.cells[wall.axis] + GHOSTS
 
 
-def _is_in_reach(wall: Wall, grid: Grid, reach: Reach) -> bool:
-    first, last = reach.along(wall.axis)
+def _is_active(wall: Wall, grid: Grid, active: ActiveNodes) -> bool:
+    first, last = active.along(wall.axis)
     return first <= _row_of_wall(wall, grid) <= last
 
 
-def _held_row(wall: Wall, grid: Grid, reach: Reach) -> tuple[float, ...]:
+def _held_row(wall: Wall, grid: Grid, active: ActiveNodes) -> tuple[float, ...]:
     axis, other = wall.axis, 1 - wall.axis
-    sign, place = (1.0, grid.lower[axis]) if wall.is_lower else (-1.0, grid.upper[axis])
-    first, last = reach.along(other)
+    sign, position = (1.0, grid.lower[axis]) if wall.is_lower else (-1.0, grid.upper[axis])
+    first, last = active.along(other)
     start = _row_of_wall(wall, grid) * grid.strides[axis] + first * grid.strides[other]
-    does = int(wall.kind), axis, sign, place, wall.coefficient, wall.velocity
+    does = int(wall.kind), axis, sign, position, wall.coefficient, wall.velocity
     return *does, first, last - first + 1, start, grid.strides[other]
 
 
-def hold_at_walls(grid: Grid, rows: NDArray[np.void], gaps: NDArray[np.float64], dt: float) -> TakenByWalls:
+def hold_at_walls(grid: Grid, rows: NDArray[np.void], clearances: NDArray[np.float64], dt: float) -> TakenByWalls:
     """Apply walls to the new velocities of their rows of nodes. Returns the energies that the walls take.
 
-    A node of a friction wall comes no closer in a step of dt [s] than its gap [m] (`contact`).
+    A node of a friction wall comes no closer in a step of dt [s] than its clearance [m] (`wall_clearance`).
 
     Energy is counted as impulse times the mean of old and new velocity, which is zero for what stays at rest; friction
     as the tangential impulse of a friction wall times the mean sliding velocity.
     """
-    return TakenByWalls(*_hold(grid.nodes, rows, gaps, dt))
+    return TakenByWalls(*_hold(grid.nodes, rows, clearances, dt))
 
 
 @njit(error_model="numpy", cache=True)
 @named(CORE_MARK)
-def _hold(nodes, rows, gaps, dt):  # type: ignore[no-untyped-def]
+def _hold(nodes, rows, clearances, dt):  # type: ignore[no-untyped-def]
     taken, dissipated = 0.0, 0.0
     for number in range(len(rows)):
         row = rows[number]
@@ -131,7 +131,7 @@ def _hold(nodes, rows, gaps, dt):  # type: ignore[no-untyped-def]
             free_normal, free_tangential = nodes[node + NEW_VX + axis], nodes[node + NEW_VY - axis]
             old_normal, old_tangential = nodes[node + OLD_VX + axis], nodes[node + OLD_VY - axis]
             normal, tangential = free_normal, free_tangential
-            allowed = gaps[number, row.first + k] / dt
+            allowed = clearances[number, row.first + k] / dt
             excess = max(0.0, -sign * normal - allowed)
             if row.kind == WallKind.NO_SLIP:
                 normal, tangential = 0.0, wall_velocity

@@ -26,7 +26,7 @@ def limited(simulation: Simulation) -> dict[str, int]:
 
 
 def _without_stress(body: Body) -> int:
-    return int(((body.points[SXX] == 0.0) & (body.points[SYY] == 0.0)).sum())
+    return int(((body.stress[0] == 0.0) & (body.stress[1] == 0.0)).sum())
 
 
 def _at_walls(simulation: Simulation, body: Body) -> int:

@@ -6,13 +6,13 @@ from pathlib import Path
 import h5py
 
 from grainlaw.materials import InputError, atomic
-from grainlaw.mpm_core.grid.active_nodes import reach_between
+from grainlaw.mpm_core.grid.active_nodes import active_between
 from grainlaw.mpm_core.ledger import Ledger
 from grainlaw.mpm_core.simulation import Simulation
 
 CHECKPOINT_NAME = "checkpoint.h5"
-# What of the reach is stored; the rest follows.
-REACH_ROWS = ("first_rows", "last_rows")
+# What of the active nodes is stored; the rest follows.
+ACTIVE_ROWS = ("first_rows", "last_rows")
 
 
 @dataclass
@@ -39,21 +39,21 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
         for name, part in (("clock", clock), ("ledger", simulation.ledger)):
             file.create_group(name).attrs.update(asdict(part))
         # Found anew from where points have drifted to, it would be another, and so what is withheld from its nodes.
-        for name in REACH_ROWS:
-            file.create_dataset(f"reach/{name}", data=getattr(simulation.reach, name))
+        for name in ACTIVE_ROWS:
+            file.create_dataset(f"active/{name}", data=getattr(simulation.active, name))
         for number, body in enumerate(simulation.bodies):
             group = file.create_group(f"body/{number}")
             group.create_dataset("points", data=body.points)
             group.create_dataset("ids", data=body.ids)
             group.create_dataset("stripe_starts", data=body.stripe_starts)
-            group.attrs.update(law=body.law.name, columns=", ".join(body.column_names))
+            group.attrs.update(law=body.law.name, columns=", ".join(body.row_names))
             group.attrs.update(awake=body.awake, signal_speed_asleep=body.signal_speed_asleep)
         if simulation.sleep is not None:
             sleep = file.create_group("sleep")
             sleep.attrs["started"] = simulation.sleep.started
             sleep.create_dataset("withheld", data=simulation.sleep.withheld, compression="gzip")
-            for number, places in enumerate(simulation.sleep.places):
-                sleep.create_dataset(f"places/{number}", data=places)
+            for number, positions in enumerate(simulation.sleep.positions):
+                sleep.create_dataset(f"positions/{number}", data=positions)
 
 
 def read_checkpoint(folder: Path, simulation: Simulation) -> Clock:
@@ -85,8 +85,8 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
         body.signal_speed_asleep = float(group.attrs["signal_speed_asleep"])
     if simulation.sleep is not None:
         simulation.sleep.started = float(file["sleep"].attrs["started"])
-        for number, places in enumerate(simulation.sleep.places):
-            places[:] = file[f"sleep/places/{number}"][:]
+        for number, positions in enumerate(simulation.sleep.positions):
+            positions[:] = file[f"sleep/positions/{number}"][:]
         simulation.sleep.withheld = file["sleep/withheld"][:]
         simulation.sleep.bring_sleepers()
     simulation.time = float(file.attrs["time"])
@@ -95,7 +95,7 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     simulation.last_step = float(file.attrs["last_step"])
     simulation.signal_speed = float(file.attrs["signal_speed"])
     simulation.strain_rate = float(file.attrs["strain_rate"])
-    simulation.keep_to(reach_between(*(file[f"reach/{name}"][:] for name in REACH_ROWS)))
+    simulation.keep_to(active_between(*(file[f"active/{name}"][:] for name in ACTIVE_ROWS)))
     simulation.ledger = Ledger(**{name: float(value) for name, value in file["ledger"].attrs.items()})
     clock = file["clock"].attrs
     return Clock(int(clock["next_frame"]), int(clock["next_history"]), float(clock["wall_time"]))

@@ -12,7 +12,7 @@ from grainlaw.materials.law import Law
 from grainlaw.materials.tensor import deviatoric_stress, pressure
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.kernels.invariants import over_stress
-from grainlaw.mpm_core.layout import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ, VX, VY
+from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, SZZ
 from grainlaw.mpm_core.output.frame import Field, Frame
 
 Array = NDArray[np.float64]
@@ -43,15 +43,15 @@ def _column(index: int) -> Callable[[Body], Array]:
 
 
 def _velocity(body: Body) -> Array:
-    return np.column_stack([body.points[VX], body.points[VY], np.zeros(body.count)])
+    return np.column_stack([body.velocity[0], body.velocity[1], np.zeros(body.count)])
 
 
 def _solid_fraction(body: Body) -> Array:
-    return np.asarray(body.points[DENSITY] / body.parameters.grain_density)
+    return np.asarray(body.density / body.parameters.grain_density)
 
 
 def _volumetric_strain_rate(body: Body) -> Array:
-    return np.asarray(-(body.points[LXX] + body.points[LYY]))
+    return np.asarray(-(body.velocity_gradient[0, 0] + body.velocity_gradient[1, 1]))
 
 
 FIELDS = {

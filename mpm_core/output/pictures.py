@@ -1,4 +1,4 @@
-"""The pictures of a run: its last frame, its history and, where a body spread, its snapshots."""
+"""The pictures of a run: its last frame, its history and, where a body shift_points, its snapshots."""
 
 from collections.abc import Sequence
 from pathlib import Path

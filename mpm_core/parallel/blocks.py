@@ -10,7 +10,7 @@ from grainlaw.mpm_core.kernels.simd.registers import MOST_AT_ONCE
 
 # Points of a block, at most.
 BLOCK = 2048
-# Blocks come in as many, so that two or four threads have equal shares.
+# Blocks come in as many, so that two or four threads have equal ranges.
 EQUAL_SHARES = 4
 
 

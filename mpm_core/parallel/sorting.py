@@ -18,7 +18,7 @@ from grainlaw.mpm_core.layout import X, Y
 from grainlaw.mpm_core.parallel.blocks import EQUAL_SHARES
 
 LONGEST_DRIFT = 0.9
-# Stripes come in multiples of the first, so that four threads have equal shares of each parity; else of the second.
+# Stripes come in multiples of the first, so that four threads have equal ranges of each parity; else of the second.
 STRIPES_IN_TURN = (2 * EQUAL_SHARES, EQUAL_SHARES)
 
 

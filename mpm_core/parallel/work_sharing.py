@@ -1,4 +1,4 @@
-"""How threads share the parts of a pass: each begins with a share of its own, and who has finished helps the others.
+"""How threads share the chunks of a pass: each begins with a share of its own, and who has finished helps the others.
 
 A thread whose core is slower, or whose points take longer, then keeps nobody waiting. Parts do not depend on one
 another, and what comes of them does not depend on who does them.
@@ -11,10 +11,10 @@ from llvmlite import ir
 from numba.core import types
 from numba.extending import intrinsic, register_jitable
 
-# Of the work of a thread: the next part, and the one behind its last. The rest of the row keeps those of two threads
+# Of the work of a thread: the next chunk, and the one behind its last. The rest of the row keeps those of two threads
 # out of one cache line.
 NEXT, END = 0, 1
-ROOM = 16
+STRIDE = 16
 
 
 @intrinsic
@@ -28,29 +28,29 @@ def _taken(typing_context: Any, array: Any, position: Any) -> Any:
 
 
 @register_jitable
-def shares_of(parts, threads):  # type: ignore[no-untyped-def]
-    """The parts from zero on, shared between threads."""
-    shares = np.zeros(threads * ROOM, np.int64)
+def chunk_ranges(chunks, threads):  # type: ignore[no-untyped-def]
+    """The chunks from zero on, shared between threads."""
+    ranges = np.zeros(threads * STRIDE, np.int64)
     for thread in range(threads):
-        shares[thread * ROOM + NEXT] = parts * thread // threads
-        shares[thread * ROOM + END] = parts * (thread + 1) // threads
-    return shares
+        ranges[thread * STRIDE + NEXT] = chunks * thread // threads
+        ranges[thread * STRIDE + END] = chunks * (thread + 1) // threads
+    return ranges
 
 
 @register_jitable
-def threads_of(shares):  # type: ignore[no-untyped-def]
-    """How many threads there are shares for."""
-    return len(shares) // ROOM
+def threads_of(ranges):  # type: ignore[no-untyped-def]
+    """How many threads there are ranges for."""
+    return len(ranges) // STRIDE
 
 
 @register_jitable
-def next_part(shares, thread):  # type: ignore[no-untyped-def]
-    """The next part for a thread: of its own share, else of another's; -1 where nothing is left."""
-    threads = threads_of(shares)
+def next_chunk(ranges, thread):  # type: ignore[no-untyped-def]
+    """The next chunk for a thread: of its own share, else of another's; -1 where nothing is left."""
+    threads = threads_of(ranges)
     for turn in range(threads):
-        share = (thread + turn) % threads * ROOM
-        if shares[share + NEXT] < shares[share + END]:
-            part = _taken(shares, share + NEXT)  # type: ignore[call-arg, var-annotated]
-            if part < shares[share + END]:
-                return part
+        share = (thread + turn) % threads * STRIDE
+        if ranges[share + NEXT] < ranges[share + END]:
+            chunk = _taken(ranges, share + NEXT)  # type: ignore[call-arg, var-annotated]
+            if chunk < ranges[share + END]:
+                return chunk
     return -1

@@ -7,7 +7,7 @@ from grainlaw.materials import InputError, SymmetricTensor
 from grainlaw.materials.law import Law
 from grainlaw.mpm_core.body import POINTS_AT_ONCE, Body
 from grainlaw.mpm_core.kernels.positions import put_density, put_positions
-from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, RESTS, SXX, SYY, SZZ, VX, VY, allocate
+from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, REMAINDERS, SXX, SYY, SZZ, VX, VY, allocate
 from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
 from grainlaw.mpm_core.scene.shapes import lattice
 
@@ -63,7 +63,7 @@ def _build(
 ) -> Body:
     law = scene.law(section.material)
     parameters = scene.parameters(section.material)
-    rests = len(RESTS) if scene.precision == "single" else 0
+    rests = len(REMAINDERS) if scene.precision == "single" else 0
     columns = FIRST_STATE + len(law.state._fields) + keeps_shear_strain + rests
     storage = allocate(columns, len(positions), scene.precision)
     points = storage[:, : len(positions)]

@@ -131,7 +131,7 @@ class TransferSection(Section):
     )
     spreading: bool = Field(
         default=False,
-        description="points of loose grains also move down the gradient of crowding; for flows of long duration, where "
+        description="points of loose grains also move down the gradient of overfill; for flows of long duration, where "
         "points crowd",
     )
 

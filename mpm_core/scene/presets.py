@@ -20,7 +20,7 @@ from grainlaw.mpm_core.scene.shapes import AnyShape
 FINEST_SHARE = 0.5
 # Time constant of the transfer over the cell size [s/m] with which piles of mu(I)-LC converge, as long as its waves
 # take to cross two or three cells, and squat ones of overconsolidated clay repeat.
-SHORT_MEMORY = 0.1
+SHORT_BLEND_TIME = 0.1
 # What is left to a scene whose accuracy is refused.
 INSTEAD = "state grid.cell_size and time.safety instead"
 
@@ -47,9 +47,9 @@ class Preset:
 
 PRESETS: dict[str, dict[str, Preset]] = {
     "mu_i_lc": {
-        "10%": Preset(8, 25, 0.4, cells_along=15, memory=SHORT_MEMORY),
-        "3%": Preset(32, 25, 0.4, cells_along=68, memory=SHORT_MEMORY),
-        "1%": Preset(48, 25, 0.4, cells_along=96, memory=SHORT_MEMORY),
+        "10%": Preset(8, 25, 0.4, cells_along=15, memory=SHORT_BLEND_TIME),
+        "3%": Preset(32, 25, 0.4, cells_along=68, memory=SHORT_BLEND_TIME),
+        "1%": Preset(48, 25, 0.4, cells_along=96, memory=SHORT_BLEND_TIME),
     },
     "modified_cam_clay, overconsolidation_ratio 1": {
         "10%": Preset(48, 4, 0.4),
@@ -58,7 +58,7 @@ PRESETS: dict[str, dict[str, Preset]] = {
     },
     # More slender columns fall in one of two ways, and leave other piles.
     "modified_cam_clay, overconsolidation_ratio 4": {
-        "10%": Preset(64, 25, 0.4, cells_along=80, memory=SHORT_MEMORY, slenderness=1.5)
+        "10%": Preset(64, 25, 0.4, cells_along=80, memory=SHORT_BLEND_TIME, slenderness=1.5)
     },
 }
 ACCURACIES = ("10%", "3%", "1%")

@@ -11,7 +11,6 @@ import numpy as np
 
 from grainlaw.materials import InputError
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.layout import SXX, SYY
 
 ROUNDING = float(np.finfo(np.float32).eps) / 2.0
 # Of the stress that a body is under.
@@ -41,4 +40,4 @@ def refuse_coarse_stress(
 def typical_stress(body: Body, gravity: float) -> float:
     """The larger of initial stress and weight of the body [Pa]; zero if it has neither."""
     height = float(np.ptp(body.positions, axis=1).max())
-    return max(float(np.abs(body.points[[SXX, SYY]]).max()), body.initial_density * gravity * height)
+    return max(float(np.abs(body.stress[:2]).max()), body.initial_density * gravity * height)

@@ -24,7 +24,7 @@ class Plan:
 
     bytes_per_point    of the arrays that hold the points
     memory_bytes       greatest memory of this process while it built the scene and made the first steps, all included
-    step, stable_step  at the start [s]
+    step, critical_time_step  at the start [s]
     steps              with the signal speeds of rehearsals on coarse grids
     wall_time          of all steps and all output [s], without compilation
     savings            what this scene need not do or keep
@@ -33,11 +33,11 @@ class Plan:
     laws: list[str]
     points: int
     cells: int
-    nodes_in_reach: int
+    active_nodes: int
     bytes_per_point: float
     memory_bytes: int
     step: float
-    stable_step: float
+    critical_time_step: float
     steps: int
     seconds_per_step: float
     output_time: float
@@ -53,7 +53,7 @@ def plan(scene: Scene, threads: int = 1) -> Plan:
     started = time.perf_counter()
     simulation = built_simulation(scene, threads)
     build_time = time.perf_counter() - started - simulation.build_time
-    stable = simulation.stable_step()
+    stable = simulation.critical_time_step()
     step = scene.time.step or scene.time.safety * stable
     points = sum(body.count for body in simulation.bodies)
     interval = scene.output.interval or scene.time.end / FRAMES_BY_DEFAULT
@@ -68,11 +68,11 @@ def plan(scene: Scene, threads: int = 1) -> Plan:
         laws=list(dict.fromkeys(body.law.name for body in simulation.bodies)),
         points=points,
         cells=scene.grid.cells[0] * scene.grid.cells[1],
-        nodes_in_reach=simulation.reach.nodes,
+        active_nodes=simulation.active.nodes,
         bytes_per_point=sum(body.points.nbytes + body.ids.nbytes for body in simulation.bodies) / points,
         memory_bytes=memory_bytes,
         step=step,
-        stable_step=stable,
+        critical_time_step=stable,
         steps=steps,
         seconds_per_step=seconds,
         output_time=output_time,
@@ -94,7 +94,7 @@ def _steps(scene: Scene, signal_speed: float, stops: int) -> int:
 
 def _savings(simulation: Simulation) -> list[str]:
     nodes = simulation.grid.shape[0] * simulation.grid.shape[1]
-    found = [f"grid: {1.0 - simulation.reach.nodes / nodes:.0%} of the nodes are out of reach at the start"]
+    found = [f"grid: {1.0 - simulation.active.nodes / nodes:.0%} of the nodes are not active at the start"]
     if simulation.scene.precision == "single":
         found += [f"single precision: {line}" for line in _in_single(simulation)]
     if "shear_strain" not in simulation.fields:
@@ -107,7 +107,7 @@ def _savings(simulation: Simulation) -> list[str]:
 def _in_single(simulation: Simulation) -> list[str]:
     doubles = sorted({body.law.name for body in simulation.bodies if not body.law.holds_in_single})
     laws = [f"{', '.join(doubles)} computed in double, as it does not hold in single"] if doubles else []
-    return ["half of the memory for points and for nodes in reach", *laws]
+    return ["half of the memory for points and for active nodes", *laws]
 
 
 def _seconds_per_step(simulation: Simulation, dt: float) -> float:

@@ -87,7 +87,7 @@ def _advance(simulation: Simulation, recorder: Recorder, started: float, progres
 
 
 def _refuse_impossible_steps(simulation: Simulation) -> None:
-    step, stable = simulation.scene.time.step, simulation.stable_step()
+    step, stable = simulation.scene.time.step, simulation.critical_time_step()
     first = step or simulation.adaptive_step()
     if simulation.smallest_step > first:
         where = f"{simulation.scene.source}: time.smallest_step = {simulation.smallest_step:g} s"

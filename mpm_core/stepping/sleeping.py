@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.grid.active_nodes import Reach, nothing_in_reach, reach_of
+from grainlaw.mpm_core.grid.active_nodes import ActiveNodes, find_active_nodes, no_active_nodes
 from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.kernels.grid_update import clear
 from grainlaw.mpm_core.kernels.shape_functions import Basis
@@ -48,7 +48,7 @@ STEPS_PER_LOOK = 8
 class Sleep:
     """Which points sleep, and what they bring to the grid; `started` [s] is when the present window began.
 
-    places    positions of each body's points at that time, in the order of generation, shape (2, n) [m]
+    positions    positions of each body's points at that time, in the order of generation, shape (2, n) [m]
     withheld  momentum withheld from each node since then, shape (nodes along x, along y, 2) [kg/s]
     nodes     what the sleeping points bring, as in `Grid.nodes`
     full      mass of a full cell of the densest body at the start [kg/m]
@@ -62,10 +62,10 @@ class Sleep:
         self.basis = basis
         # Before the first window: one that ends when that is to begin, in which every point came from far away.
         self.started = settings.start - settings.window
-        self.places = [np.full((2, body.count), np.inf) for body in bodies]
+        self.positions = [np.full((2, body.count), np.inf) for body in bodies]
         self.withheld = np.zeros((*grid.shape, 2))
         self.nodes = grid.empty_nodes()
-        self.reach = nothing_in_reach(grid)
+        self.active = no_active_nodes(grid)
         self.full = max(body.initial_density for body in bodies) * grid.cell_size**2
 
     @property
@@ -78,23 +78,23 @@ class Sleep:
         self.started = time
         # New memory rather than zeros in the old: occupied only where something is withheld.
         self.withheld = np.zeros((*self.grid.shape, 2))
-        for body, places in zip(self.bodies, self.places, strict=True):
-            places[:, body.ids - body.first_id] = body.points[[X, Y]]
+        for body, positions in zip(self.bodies, self.positions, strict=True):
+            positions[:, body.ids - body.first_id] = body.positions
 
-    def lay_on_grid(self, reach: Reach) -> None:
-        """Let the nodes in reach start from what the sleeping points bring."""
-        copy_nodes(self.nodes, self.grid.nodes, self.grid.shape[1], reach)
+    def lay_on_grid(self, active: ActiveNodes) -> None:
+        """Let the active nodes start from what the sleeping points bring."""
+        copy_nodes(self.nodes, self.grid.nodes, self.grid.shape[1], active)
 
-    def hold(self, reach: Reach) -> None:
+    def hold(self, active: ActiveNodes) -> None:
         """Hold the nodes with sleeping mass, if there are any."""
         if self.has_sleepers:
-            hold_sleepers(self.grid.nodes, self.nodes, self.withheld, reach)
+            hold_sleepers(self.grid.nodes, self.nodes, self.withheld, active)
 
-    def wake_up(self, reach: Reach) -> bool:
-        """Wake what is near a node in reach from which too much is withheld; returns whether anything woke."""
+    def wake_up(self, active: ActiveNodes) -> bool:
+        """Wake what is near an active node from which too much is withheld; returns whether anything woke."""
         stirred = np.zeros(self.grid.shape, np.bool_)
         waking = self.full * WAKING * self.speed
-        if not stir_nodes(self.withheld, waking * waking, reach, stirred):
+        if not stir_nodes(self.withheld, waking * waking, active, stirred):
             return False
         self.withheld[stirred] = 0.0
         woke = False
@@ -110,10 +110,10 @@ class Sleep:
         if time - self.started < self.window:
             return False
         stirred = np.zeros(self.grid.shape, np.bool_)
-        for body, places in zip(self.bodies, self.places, strict=True):
-            was = places[:, body.ids - body.first_id]
-            displaced = np.hypot(*(body.points[[X, Y]] - was)) > self.speed * (time - self.started)
-            stir_around_points(*body.points[[X, Y]][:, displaced], *self._stencil(), stirred)
+        for body, positions in zip(self.bodies, self.positions, strict=True):
+            was = positions[:, body.ids - body.first_id]
+            displaced = np.hypot(*(body.positions - was)) > self.speed * (time - self.started)
+            stir_around_points(*body.positions[:, displaced], *self._stencil(), stirred)
         fell = False
         for body in self.bodies:
             slept = np.ones(body.count - body.awake, np.bool_)
@@ -126,10 +126,10 @@ class Sleep:
 
     def bring_sleepers(self) -> None:
         """Scatter anew what the sleeping points bring, after some woke or fell asleep."""
-        clear(self.nodes, self.grid, self.reach)
-        self.reach = reach_of([body.points_asleep for body in self.bodies], self.grid, self.basis, ())
+        clear(self.nodes, self.grid, self.active)
+        self.active = find_active_nodes([body.points_asleep for body in self.bodies], self.grid, self.basis, ())
         for body in self.bodies:
-            body.sleepers_to_grid(self.nodes, self.grid)
+            body.p2g_of_sleepers(self.nodes, self.grid)
 
     def _touched(self, points: NDArray[np.float64], stirred: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Whether any node of each point is marked."""

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from grainlaw.materials.law import Law
 from grainlaw.materials.tensor import SymmetricTensor, contraction, isotropic, scaled, trace
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.layout import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ
+from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, SZZ
 
 # Of volume, in one adaptive step.
 LARGEST_STRAIN = 0.02
@@ -104,7 +104,7 @@ def what_sets_the_step(body: Body, reason: Callable[[Body], NDArray[np.float64]]
 
 def strain_rates(body: Body) -> NDArray[np.float64]:
     """Absolute rate of volumetric strain of each point [1/s]."""
-    rates: NDArray[np.float64] = np.abs(body.points[LXX] + body.points[LYY])
+    rates: NDArray[np.float64] = np.abs(body.velocity_gradient[0, 0] + body.velocity_gradient[1, 1])
     return rates
 
 

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from grainlaw.mpm_core.layout import DENSITY, X, Y
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
 from grainlaw.validation.scenes import advance, in_order_of_generation, shipped_simulation
@@ -43,17 +42,17 @@ def collapsed(effort: Effort, changes: dict[str, Any] | None = None) -> tuple[Si
     changes = {"grid.cell_size": CELL[effort], "output.fields": [], **(changes or {})}
     simulation = shipped_simulation("aluminium_bars", changes)
     body = simulation.bodies[0]
-    start = body.points[[X, Y]].copy()
+    start = body.positions.copy()
     advance(simulation, END)
-    end = np.array([in_order_of_generation(body, row) for row in (X, Y)])
+    end = in_order_of_generation(body, body.positions)
     return simulation, np.hypot(*(end - start))
 
 
 def surface(simulation: Simulation) -> tuple[Array, Array]:
     """Middles of columns one cell wide [m], and the height that the volume of their points fills [m]."""
     body, cell = simulation.bodies[0], simulation.grid.cell_size
-    columns = (body.points[X] / cell).astype(int)
-    volume = np.bincount(columns, body.point_mass / body.points[DENSITY], simulation.grid.cells[0])
+    columns = (body.positions[0] / cell).astype(int)
+    volume = np.bincount(columns, body.volume, simulation.grid.cells[0])
     return cell * (np.arange(len(volume)) + 0.5), volume / cell
 
 
@@ -73,9 +72,9 @@ def area_between(x: Array, height: Array) -> float:
 def failure_at_base(simulation: Simulation, moved: Array) -> float:
     """The place at the start of the first point of the lowest row that has moved [m]."""
     cell = simulation.grid.cell_size
-    start = shipped_simulation("aluminium_bars", {"grid.cell_size": cell, "output.fields": []}).bodies[0].points
-    lowest = start[Y] < 0.5 * cell
-    return float(start[X][lowest & (moved > MOVED)].min())
+    start = shipped_simulation("aluminium_bars", {"grid.cell_size": cell, "output.fields": []}).bodies[0].positions
+    lowest = start[1] < 0.5 * cell
+    return float(start[0][lowest & (moved > MOVED)].min())
 
 
 def toe_measurement(x: Array, height: Array) -> Measurement:

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from grainlaw.mpm_core.layout import VX, Y
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error, upper_bound
 from grainlaw.validation.scenes import advance, shipped_simulation
@@ -40,17 +39,17 @@ def flow(changes: dict[str, Any], end: float, steady_start: bool = False) -> tup
     simulation = shipped_simulation("incline", changes)
     body = simulation.bodies[0]
     if steady_start:
-        body.points[VX] = exact_velocity(body.points[Y])
-    history = [(0.0, float(body.points[VX].max()), HEIGHT)]
+        body.velocity[0] = exact_velocity(body.positions[1])
+    history = [(0.0, float(body.velocity[0].max()), HEIGHT)]
     half_spacing = 0.25 * simulation.grid.cell_size
 
     def observe(present: Simulation) -> None:
-        y, v = body.points[Y], body.points[VX]
+        y, v = body.positions[1], body.velocity[0]
         top = y > y.max() - half_spacing
         history.append((present.time, float(v[top].mean()), float(y.max()) + half_spacing))
 
     advance(simulation, end, observe, intervals=40)
-    return body.points[Y].copy(), body.points[VX].copy(), np.array(history)
+    return body.positions[1].copy(), body.velocity[0].copy(), np.array(history)
 
 
 def measurements(label: str, y: np.ndarray, v: np.ndarray, history: np.ndarray) -> tuple[Measurement, ...]:

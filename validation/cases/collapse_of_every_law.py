@@ -9,7 +9,6 @@ from grainlaw.materials.conformance.code import nanoseconds_per_update
 from grainlaw.materials.conformance.subject import Subject
 from grainlaw.materials.registry import get_material
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.layout import DENSITY
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
 from grainlaw.validation.collapses import collapse, published_viscous
@@ -81,7 +80,7 @@ def nanoseconds_per_step(simulation: Simulation) -> float:
 
 def volume(body: Body) -> float:
     """Of all points [m2]."""
-    return float(np.sum(body.point_mass / body.points[DENSITY]))
+    return float(np.sum(body.volume))
 
 
 def measured(law: str, effort: Effort) -> Collapse:

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from grainlaw.materials.registry import get_material
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.kernels.wall_clearance import Contact
-from grainlaw.mpm_core.layout import VX, Y
+from grainlaw.mpm_core.kernels.wall_clearance import WallClearance
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, scaled_error
@@ -29,22 +28,22 @@ LAWS: dict[str, dict[str, Any]] = {
 }
 
 
-class FeltAtOnce(Contact):
+class FeltAtOnce(WallClearance):
     """The mistake: a wall that is felt as soon as the shape function of its row reaches a point."""
 
-    def gaps(self) -> NDArray[np.float64]:
-        """No gap anywhere."""
+    def clearances(self) -> NDArray[np.float64]:
+        """No clearance anywhere."""
         return np.zeros((len(self.rows), max(self.grid.shape)))
 
 
-class WithoutGaps(Simulation):
+class WithoutClearances(Simulation):
     """A simulation with that mistake."""
 
-    def find_reach(self) -> None:
-        """Find the nodes in reach, and forget the points near walls."""
-        super().find_reach()
-        walls = self.contact.rows
-        self.contact = FeltAtOnce(walls, self.bodies, self.grid, self.basis, self.periodic_axes, self.threads)
+    def find_active_nodes(self) -> None:
+        """Find the active nodes, and forget the points near walls."""
+        super().find_active_nodes()
+        walls = self.wall_clearance.rows
+        self.wall_clearance = FeltAtOnce(walls, self.bodies, self.grid, self.basis, self.periodic_axes, self.threads)
 
 
 def block(law: str, cell: float, lower: float, kind: type[Simulation], velocity: float = 0.0) -> Simulation:
@@ -71,7 +70,7 @@ def block(law: str, cell: float, lower: float, kind: type[Simulation], velocity:
 def lowest_row(simulation: Simulation) -> float:
     """Mean height of the lowest row of points [cells], a quarter where it touches the floor unstrained."""
     cell = simulation.grid.cell_size
-    heights = np.sort(simulation.bodies[0].points[Y])
+    heights = np.sort(simulation.bodies[0].positions[1])
     return float(heights[: round(2.0 * WIDTH / cell)].mean()) / cell
 
 
@@ -80,7 +79,7 @@ def gap_when_lowered(law: str, cell: float, kind: type[Simulation] = Simulation)
     simulation = block(law, cell, 2.0 * cell, kind)
 
     def drag(body: Body, time: float) -> NDArray[np.float64]:
-        return -body.points[VX : VX + 2] / DRAG
+        return -body.velocity / DRAG
 
     simulation.body_force = drag
     advance(simulation, 2.0 * cell / (GRAVITY * DRAG) + REST)
@@ -90,9 +89,9 @@ def gap_when_lowered(law: str, cell: float, kind: type[Simulation] = Simulation)
 def fallen_at_impact(law: str, cell: float, kind: type[Simulation] = Simulation) -> float:
     """The way [cells] of the centre of a dropped block at the time when a free fall reaches the floor."""
     simulation = block(law, cell, DROP, kind)
-    start = float(simulation.bodies[0].points[Y].mean())
+    start = float(simulation.bodies[0].positions[1].mean())
     advance(simulation, IMPACT)
-    return (start - float(simulation.bodies[0].points[Y].mean())) / cell
+    return (start - float(simulation.bodies[0].positions[1].mean())) / cell
 
 
 def after_impact(law: str, cell: float, lower: float, velocity: float, kind: type[Simulation] = Simulation) -> float:
@@ -131,7 +130,7 @@ def measure(effort: Effort) -> Evidence:
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """Both laws on the coarsest cell, with walls that are felt at once."""
-    return tuple(m for law in LAWS for m in measurements(law, CELLS[effort][0], WithoutGaps))
+    return tuple(m for law in LAWS for m in measurements(law, CELLS[effort][0], WithoutClearances))
 
 
 CASE = Case(

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from grainlaw.materials.rheology import longitudinal_wave_speed, shear_modulus
-from grainlaw.mpm_core.layout import VX, X
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
 from grainlaw.validation.scenes import advance, in_order_of_generation, simulation_of
@@ -53,13 +52,13 @@ def vibration(cells: int, poisson_ratio: float = POISSON_RATIO) -> tuple[np.ndar
     content = scene(cells, poisson_ratio)
     simulation = simulation_of(content)
     body = simulation.bodies[0]
-    mode = np.sin(0.5 * math.pi * in_order_of_generation(body, X) / LENGTH)
-    body.points[VX] = STRAIN * wave_speed() * np.sin(0.5 * math.pi * body.points[X] / LENGTH)
+    mode = np.sin(0.5 * math.pi * in_order_of_generation(body, body.positions[0]) / LENGTH)
+    body.velocity[0] = STRAIN * wave_speed() * np.sin(0.5 * math.pi * body.positions[0] / LENGTH)
     times, amplitudes = [0.0], [STRAIN * wave_speed()]
 
     def observe(present: Simulation) -> None:
         times.append(present.time)
-        amplitudes.append(2.0 * float(np.mean(mode * in_order_of_generation(body, VX))))
+        amplitudes.append(2.0 * float(np.mean(mode * in_order_of_generation(body, body.velocity[0]))))
 
     advance(simulation, content["time"]["end"], observe, intervals=40 * PERIODS)
     return np.array(times), np.array(amplitudes)

@@ -10,7 +10,7 @@ from grainlaw.materials import SimulationError
 from grainlaw.materials.rheology import shear_modulus
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.kernels.held_nodes import nodes_where
-from grainlaw.mpm_core.layout import AFFINE, GRADIENT, VX, VY, X, Y, allocate
+from grainlaw.mpm_core.layout import allocate
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
 from grainlaw.validation.scenes import advance, simulation_of
@@ -105,16 +105,15 @@ def ring(cells: int, points_across_cell: int, angle: float) -> Simulation:
     places = circles(cells, points_across_cell)
     count = places.shape[1]
     storage = allocate(like.points.shape[0], count)
-    points = storage[:, :count]
-    points[:] = like.points[:, :1]
-    points[[X, Y]] = places
-    points[GRADIENT] = points[AFFINE] = velocity_gradient_at_start(places, angle)
-    radius, _ = polar(places)
-    turn = swing(angle, 0.0)[1] * profile(radius)[0]
-    points[[VX, VY]] = turn * np.array([-places[1], places[0]])
+    storage[:, :count] = like.points[:, :1]
     mass = DENSITY * math.pi * (OUTER**2 - INNER**2) / count
     body = Body("ring", like.law, like.parameters, storage, count, mass, first_id=0)
-    body.choose_kernels(simulation.basis, spreads=False)
+    body.positions = places
+    body.velocity_gradient = body.affine = velocity_gradient_at_start(places, angle)
+    radius, _ = polar(places)
+    turn = swing(angle, 0.0)[1] * profile(radius)[0]
+    body.velocity = turn * np.array([-places[1], places[0]])
+    body.choose_kernels(simulation.basis, shifts_points=False)
     simulation.bodies = [body]
     simulation.measure_signals()
     simulation.held_nodes = nodes_where(simulation.grid, _is_outside)
@@ -149,12 +148,12 @@ def history(
     """Times [s] and root mean square distances from the exact place [m]."""
     simulation = ring(cells, points_across_cell, angle)
     body = simulation.bodies[0]
-    places = body.points[[X, Y]].copy()
+    places = body.positions.copy()
     simulation.body_force = lambda moved, time: body_force(places[:, moved.ids], angle, time, shear_sign)
     found = [(0.0, 0.0)]
 
     def observe(present: Simulation) -> None:
-        off = body.points[[X, Y]] - position(places[:, body.ids], angle, present.time)
+        off = body.positions - position(places[:, body.ids], angle, present.time)
         found.append((present.time, float(np.sqrt((off**2).sum(axis=0).mean()))))
 
     advance(simulation, DURATION, observe, intervals=20)

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from grainlaw.materials.registry import get_material
-from grainlaw.mpm_core.layout import DENSITY, SYY, Y
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error, upper_bound
 from grainlaw.validation.scenes import advance, shipped_simulation
@@ -36,7 +35,7 @@ def heap(law: str, cell_size: float, changes: dict[str, float] | None = None) ->
 
 def height(simulation: Simulation) -> float:
     """The height of a triangle with this centre of mass [m]; it feels every point, not one at the top."""
-    return 3.0 * float(simulation.bodies[0].points[Y].mean())
+    return 3.0 * float(simulation.bodies[0].positions[1].mean())
 
 
 def stress(simulation: Simulation) -> tuple[float, float]:
@@ -45,9 +44,9 @@ def stress(simulation: Simulation) -> tuple[float, float]:
     Multiplying the equilibrium of a body on a floor at y = 0 by y gives int -sigma_yy dV = m g y_c, for any law.
     """
     body = simulation.bodies[0]
-    volumes = body.point_mass / body.points[DENSITY]
+    volumes = body.volume
     weight = -simulation.scene.gravity[1] * body.point_mass
-    return float((-volumes * body.points[SYY]).sum()), weight * float(body.points[Y].sum())
+    return float((-volumes * body.stress[1]).sum()), weight * float(body.positions[1].sum())
 
 
 def watched(law: str, effort: Effort, changes: dict[str, float] | None = None) -> tuple[list[float], list[float], Any]:

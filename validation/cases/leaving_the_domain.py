@@ -4,7 +4,6 @@ from typing import Any
 
 from grainlaw.materials import InputError, SimulationError
 from grainlaw.materials.registry import get_material
-from grainlaw.mpm_core.layout import X, Y
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
 from grainlaw.validation.scenes import advance, simulation_of
@@ -40,7 +39,7 @@ def scene(cell_size: float, kind: str, direction: tuple[float, float]) -> dict[s
 
 def points_beyond(simulation: Simulation) -> int:
     """Points outside the domain."""
-    places = simulation.bodies[0].points[[X, Y]]
+    places = simulation.bodies[0].positions
     return int(((places < 0.0) | (places > 1.0)).any(axis=0).sum())
 
 
@@ -64,7 +63,7 @@ def stops_with_its_place() -> Measurement:
 
 def _with_a_point_beyond() -> Simulation:
     simulation = simulation_of(scene(CELL[Effort.QUICK], "free_slip", (0.0, 0.0)))
-    simulation.bodies[0].points[X, 0] = BEYOND
+    simulation.bodies[0].positions[0, 0] = BEYOND
     return simulation
 
 

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from grainlaw.mpm_core.layout import X, Y
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
 from grainlaw.validation.collapses import CELL_SIZE, SCENES, collapse
 from grainlaw.validation.scenes import advance, in_order_of_generation
@@ -24,8 +23,8 @@ def asymmetry(material: str, effort: Effort, changes: dict[str, Any] | None = No
     found: list[tuple[float, float]] = []
 
     def observe(present: Any) -> None:
-        x = in_order_of_generation(body, X).reshape(shape) - AXIS
-        y = in_order_of_generation(body, Y).reshape(shape)
+        x = in_order_of_generation(body, body.positions[0]).reshape(shape) - AXIS
+        y = in_order_of_generation(body, body.positions[1]).reshape(shape)
         found.append((present.time, float(np.hypot(x + x[::-1], y - y[::-1]).max()) / SIZE))
 
     advance(simulation, END[effort], observe, intervals=25)

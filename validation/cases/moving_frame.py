@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from grainlaw.mpm_core.layout import X
 from grainlaw.validation.case import Case, Effort, Evidence, Measurement, relative_error
 from grainlaw.validation.collapses import CELL_SIZE, SCENES, Pile, collapse, pile
 from grainlaw.validation.scenes import advance
@@ -25,9 +24,9 @@ def final_pile(material: str, effort: Effort, changes: dict[str, Any]) -> tuple[
     """The pile at the end, and how far its centre of mass has moved [m]."""
     simulation = collapse(material, CELL_SIZE[effort], changes)
     body = simulation.bodies[0]
-    start = float(body.points[X].mean())
+    start = float(body.positions[0].mean())
     advance(simulation, END)
-    return pile(simulation), float(body.points[X].mean()) - start
+    return pile(simulation), float(body.positions[0].mean()) - start
 
 
 def measurements(material: str, effort: Effort, changes: dict[str, Any]) -> tuple[Measurement, ...]:

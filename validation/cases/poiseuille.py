@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from grainlaw.mpm_core.layout import VX, Y
 from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
 from grainlaw.validation.scenes import advance, simulation_of
 
@@ -57,7 +56,7 @@ def profiles(cells: int, viscosity: float = VISCOSITY) -> dict[str, tuple[np.nda
     body, found = simulation.bodies[0], {}
     for name, time in TIMES.items():
         advance(simulation, time)
-        found[name] = body.points[Y].copy(), body.points[VX].copy()
+        found[name] = body.positions[1].copy(), body.velocity[0].copy()
     return found
 
 

@@ -4,18 +4,21 @@ import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.layout import AFFINE, GRADIENT, LXY, LYX, SXX, SXY, SYY, SZZ, VX, VY, X, Y
 from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Measurement, scaled_error
 from grainlaw.validation.scenes import simulation_of
+
+Stress = NDArray[np.float64]
 
 BAND = 1e-3
 TURNS = 10
 # A multiple of eight, for the last eighth of a turn.
 STEPS_OF_A_TURN = 632
 CENTER = 0.5
-START = {SXX: -3.0, SYY: -1.0, SZZ: -2.0, SXY: 0.5}
+COMPONENTS = ("xx", "yy", "zz", "xy")
+START = np.array([-3.0, -1.0, -2.0, 0.5])
 # Inertia so large that the stress of 1 Pa cannot bend the motion that the case prescribes.
 SCENE: dict[str, Any] = {
     "gravity": [0.0, 0.0],
@@ -32,12 +35,13 @@ SCENE: dict[str, Any] = {
 }
 
 
-def turned_stress(angle: float) -> dict[int, float]:
-    """The start stress after a rigid rotation, by components."""
+def turned_stress(angle: float) -> Stress:
+    """The start stress after a rigid rotation, as `COMPONENTS`."""
     cosine, sine = math.cos(angle), math.sin(angle)
     rotation = np.array([[cosine, -sine], [sine, cosine]])
-    plane = rotation @ np.array([[START[SXX], START[SXY]], [START[SXY], START[SYY]]]) @ rotation.T
-    return {SXX: plane[0, 0], SYY: plane[1, 1], SZZ: START[SZZ], SXY: plane[0, 1]}
+    xx, yy, zz, xy = START
+    plane = rotation @ np.array([[xx, xy], [xy, yy]]) @ rotation.T
+    return np.array([plane[0, 0], plane[1, 1], zz, plane[0, 1]])
 
 
 def place(body: Body, start: np.ndarray, angle: float) -> None:
@@ -45,36 +49,36 @@ def place(body: Body, start: np.ndarray, angle: float) -> None:
     x, y = start[:, body.ids] - CENTER
     cosine, sine = math.cos(angle), math.sin(angle)
     turned_x, turned_y = cosine * x - sine * y, sine * x + cosine * y
-    body.points[X], body.points[Y] = CENTER + turned_x, CENTER + turned_y
-    body.points[VX], body.points[VY] = -turned_y, turned_x
-    body.points[GRADIENT] = body.points[AFFINE] = np.array([[0.0], [-1.0], [1.0], [0.0]])
+    body.positions = CENTER + np.array([turned_x, turned_y])
+    body.velocity = np.array([-turned_y, turned_x])
+    body.velocity_gradient = body.affine = np.array([[[0.0], [-1.0]], [[1.0], [0.0]]])
 
 
-def stress_after(steps_of_a_turn: int, turns: float, withhold_spin: bool = False) -> dict[int, float]:
-    """The mean stress after rotation in equal steps, by components."""
+def stress_after(steps_of_a_turn: int, turns: float, withhold_spin: bool = False) -> Stress:
+    """The mean stress after rotation in equal steps, as `COMPONENTS`."""
     simulation = simulation_of(SCENE)
     body = simulation.bodies[0]
-    start = body.points[[X, Y]].copy()
-    for component, value in START.items():
-        body.points[component] = value
+    start = body.positions.copy()
+    body.stress = START[:, None]
     if withhold_spin:
         _withhold_spin(body)
     step = 2.0 * math.pi / steps_of_a_turn
     for count in range(round(turns * steps_of_a_turn)):
         place(body, start, count * step)
         simulation.step(step)
-    return {component: float(body.points[component].mean()) for component in START}
+    mean: Stress = body.stress.mean(axis=1)
+    return mean
 
 
 def _withhold_spin(body: Body) -> None:
     """Show the stress pass the symmetric part of the velocity gradient only."""
     update = body.update_stress
 
-    def without_spin(dt: float, tied: float = 0.0, exchange: float = 0.0, threads: int = 1) -> None:
-        gradient = body.points[[LXY, LYX]]
-        body.points[[LXY, LYX]] = gradient.mean(axis=0)
-        update(dt, tied, exchange, threads)
-        body.points[[LXY, LYX]] = gradient
+    def without_spin(dt: float, coupled_time: float = 0.0, exchange: float = 0.0, threads: int = 1) -> None:
+        gradient = body.velocity_gradient.copy()
+        body.velocity_gradient = 0.5 * (gradient + gradient.swapaxes(0, 1))
+        update(dt, coupled_time, exchange, threads)
+        body.velocity_gradient = gradient
 
     body.update_stress = without_spin  # type: ignore[method-assign]
 
@@ -84,9 +88,9 @@ def measurements(withhold_spin: bool = False) -> tuple[Measurement, ...]:
     turns = TURNS + 0.125
     measured = stress_after(STEPS_OF_A_TURN, turns, withhold_spin)
     exact = turned_stress(2.0 * math.pi * turns)
-    scale = math.sqrt(sum(value * value for value in START.values()))
-    names = {SXX: "sigma_xx", SYY: "sigma_yy", SZZ: "sigma_zz", SXY: "sigma_xy"}
-    return tuple(scaled_error(names[c], "Pa", measured[c], exact[c], scale, BAND) for c in START)
+    scale = float(np.linalg.norm(START))
+    found = zip(COMPONENTS, measured.tolist(), exact.tolist(), strict=True)
+    return tuple(scaled_error(f"sigma_{name}", "Pa", now, wanted, scale, BAND) for name, now, wanted in found)
 
 
 def convergence(effort: Effort) -> Convergence:
@@ -96,7 +100,7 @@ def convergence(effort: Effort) -> Convergence:
     for count in counts:
         measured = stress_after(count, 1.0)
         exact = turned_stress(0.0)
-        errors.append(math.hypot(measured[SXX] - exact[SXX], measured[SXY] - exact[SXY]))
+        errors.append(float(np.linalg.norm((measured - exact)[[0, 3]])))
     sizes = tuple(2.0 * math.pi / count for count in counts)
     return Convergence("stress after one turn", "angle of a step [rad]", sizes, tuple(errors))
 

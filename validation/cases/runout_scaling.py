@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from grainlaw.mpm_core.layout import X
 from grainlaw.plugins.mu_i.friction import own_inertial_number_constant
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error, upper_bound
 from grainlaw.validation.scenes import advance, simulation_of
@@ -82,7 +81,9 @@ def runout(aspect_ratio: float, effort: Effort, static_friction: float = FRICTIO
     simulation = simulation_of(content)
     advance(simulation, content["time"]["end"])
     cell = simulation.grid.cell_size
-    occupied = np.bincount((simulation.bodies[0].points[X] / cell).astype(int), minlength=simulation.grid.cells[0] + 1)
+    occupied = np.bincount(
+        (simulation.bodies[0].positions[0] / cell).astype(int), minlength=simulation.grid.cells[0] + 1
+    )
     return float(np.argmin(occupied > 0)) * cell / WIDTH - 1.0
 
 

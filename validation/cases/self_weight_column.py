@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from grainlaw.mpm_core.layout import SYY, Y
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
 from grainlaw.validation.scenes import advance, in_order_of_generation, simulation_of
@@ -70,14 +69,14 @@ def observed(law: str, duration: float, gravity: float = GRAVITY) -> Observation
     """A column over time: the stress of each point against the weight of what was above it at the start."""
     simulation = simulation_of(scene(law, gravity))
     body = simulation.bodies[0]
-    start = in_order_of_generation(body, Y)
+    start = in_order_of_generation(body, body.positions[1])
     result = Observation(depth=HEIGHT - start)
 
     def observe(present: Simulation) -> None:
-        result.last = in_order_of_generation(body, SYY)
+        result.last = in_order_of_generation(body, body.stress[1])
         errors = np.abs(result.last + DENSITY * GRAVITY * result.depth) / WEIGHT
         result.stress = max(result.stress, float(errors.max()))
-        moved = np.abs(in_order_of_generation(body, Y) - start) / HEIGHT
+        moved = np.abs(in_order_of_generation(body, body.positions[1]) - start) / HEIGHT
         result.settlement = max(result.settlement, float(moved.max()))
 
     advance(simulation, duration, observe, intervals=50)

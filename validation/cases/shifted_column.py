@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from grainlaw.mpm_core.layout import X
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
 from grainlaw.validation.collapses import CELL_SIZE, SCENES, Pile, collapse, pile
 from grainlaw.validation.scenes import advance
@@ -17,7 +16,7 @@ MATERIALS = {Effort.QUICK: ("mu(I)-LC",), Effort.FULL: tuple(SCENES)}
 def final_pile(material: str, effort: Effort, shift: float, changes: dict[str, Any] | None = None) -> Pile:
     """The pile at the end, of a column whose points start `shift` cells off their lattice."""
     simulation = collapse(material, CELL_SIZE[effort], changes)
-    simulation.bodies[0].points[X] += shift * simulation.grid.cell_size
+    simulation.bodies[0].positions[0] += shift * simulation.grid.cell_size
     advance(simulation, END)
     return pile(simulation)
 

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from grainlaw.mpm_core.layout import DENSITY, X
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
 from grainlaw.validation.collapses import collapse
@@ -64,10 +63,10 @@ def _depth(simulation: Simulation) -> tuple[Array, Array]:
     """The volume over columns `COLUMN` cells apart, shared out by hat functions, over their distance."""
     grid, (body,) = simulation.grid, simulation.bodies
     distance = COLUMN * grid.cell_size
-    place = (body.points[X] - grid.lower[0]) / distance
+    place = (body.positions[0] - grid.lower[0]) / distance
     left = place.astype(int)
     right_share = place - left
-    volume = body.point_mass / body.points[DENSITY]
+    volume = body.volume
     columns = grid.cells[0] // COLUMN + 2
     held = np.bincount(left, volume * (1.0 - right_share), columns)
     held = held + np.bincount(left + 1, volume * right_share, columns)

@@ -3,7 +3,6 @@
 from typing import Any
 
 from grainlaw.materials.registry import get_material
-from grainlaw.mpm_core.layout import Y
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
 from grainlaw.validation.scenes import advance, simulation_of
@@ -51,9 +50,9 @@ def settlement(material: str, effort: Effort) -> Measurement:
     """How far the centre of mass of the layer sinks, over the thickness: it has nowhere to go but its ends."""
     simulation = thin(material, effort)
     body = simulation.bodies[0]
-    start = float(body.points[Y].mean())
+    start = float(body.positions[1].mean())
     advance(simulation, END[effort])
-    sunk = (start - float(body.points[Y].mean())) / CELL[effort]
+    sunk = (start - float(body.positions[1].mean())) / CELL[effort]
     return upper_bound(f"thin layer, {material}: settlement over thickness", "1", sunk, SETTLEMENT_BAND)
 
 

@@ -3,7 +3,6 @@
 import math
 from typing import Any
 
-from grainlaw.mpm_core.layout import SXY, SYY, X
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
 from grainlaw.validation.scenes import advance, shipped_simulation
@@ -30,12 +29,12 @@ def path(changes: dict[str, Any], friction_mobilised: bool = True) -> list[tuple
     simulation = shipped_simulation("sliding_block", changes)
     body = simulation.bodies[0]
     if friction_mobilised:
-        body.points[SXY] = -FRICTION * body.points[SYY]
-    start = float(body.points[X].mean())
+        body.stress[3] = -FRICTION * body.stress[1]
+    start = float(body.positions[0].mean())
     found = [(0.0, 0.0)]
 
     def observe(present: Simulation) -> None:
-        found.append((present.time, float(body.points[X].mean()) - start))
+        found.append((present.time, float(body.positions[0].mean()) - start))
 
     advance(simulation, END, observe, intervals=20)
     return found

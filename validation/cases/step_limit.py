@@ -35,7 +35,7 @@ def discs() -> Simulation:
 def refused(above: float) -> Measurement:
     """A step set by hand; 0 if the run refuses it."""
     simulation = shipped_simulation("two_discs")
-    step = above * simulation.stable_step()
+    step = above * simulation.critical_time_step()
     content = simulation.scene.model_dump(mode="json", exclude_none=True)
     content["time"] |= {"step": step, "end": 10.0 * step}
     content["output"] |= {"vtu": False, "pictures": False}

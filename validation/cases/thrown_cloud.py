@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from grainlaw.materials.registry import get_material
-from grainlaw.mpm_core.layout import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ, VX, VY, X, Y
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Measurement, relative_error, upper_bound
 from grainlaw.validation.scenes import advance, simulation_of
@@ -43,8 +42,8 @@ def scene(law: str, parameter_set: str, cell_size: float) -> dict[str, Any]:
 def throw(simulation: Simulation, rate: float) -> None:
     """Give the cloud the velocity rate (x - c)."""
     body = simulation.bodies[0]
-    body.points[[VX, VY]] = rate * (body.points[[X, Y]] - CENTER)
-    body.points[LXX : LYY + 1] = rate * np.array([[1.0], [0.0], [0.0], [1.0]])
+    body.velocity = rate * (body.positions - CENTER)
+    body.velocity_gradient = rate * np.eye(2)[:, :, None]
     simulation.measure_signals()
 
 
@@ -64,11 +63,11 @@ def flight(label: str, law: str, parameter_set: str, effort: Effort) -> tuple[tu
     throw(simulation, -rate)
     advance(simulation, OPENING + STILL_OPEN * OPENING)
     scale = DENSITY_AT_START * (rate * RADIUS) ** 2
-    stress = float(np.abs(body.points[[SXX, SYY, SZZ, SXY]]).max())
+    stress = float(np.abs(body.stress).max())
     size = (1.0 + RATE * OPENING) * (1.0 - rate * STILL_OPEN * OPENING)
     exact = DENSITY_AT_START / size**2
-    inside = np.hypot(*(body.points[[X, Y]] - CENTER)) < 0.7 * RADIUS
-    found = float(body.points[DENSITY, inside].mean())
+    inside = np.hypot(*(body.positions - CENTER)) < 0.7 * RADIUS
+    found = float(body.density[inside].mean())
     return (
         upper_bound(f"{label}: stress in flight over rho v^2", "1", stress / scale, STRESS_BAND),
         relative_error(f"{label}: density in flight", "kg/m3", found, exact, DENSITY_BAND),

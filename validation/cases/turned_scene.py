@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from grainlaw.mpm_core.layout import SXX, SXY, SYY, X, Y
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
 from grainlaw.validation.collapses import CELL_SIZE, SCENES, collapse
@@ -27,10 +26,12 @@ TURNED: dict[str, Any] = {
 
 def turn(simulation: Simulation, upright: Simulation) -> None:
     """Give the points of the turned column what those of the upright one have: (x, y) -> (y, L - x)."""
-    points, model = simulation.bodies[0].points, upright.bodies[0].points
-    points[:] = model
-    points[X], points[Y] = model[Y], LENGTH - model[X]
-    points[SXX], points[SYY], points[SXY] = model[SYY], model[SXX], -model[SXY]
+    turned, model = simulation.bodies[0], upright.bodies[0]
+    turned.points[:] = model.points
+    x, y = model.positions
+    turned.positions = np.array([y, LENGTH - x])
+    xx, yy, zz, xy = model.stress
+    turned.stress = np.array([yy, xx, zz, -xy])
     simulation.measure_signals()
 
 
@@ -41,8 +42,8 @@ def difference(material: str, effort: Effort, changes: dict[str, Any]) -> Measur
     turn(turned, upright)
     for simulation in (upright, turned):
         advance(simulation, END[effort])
-    x, y = (in_order_of_generation(upright.bodies[0], row) for row in (X, Y))
-    turned_x, turned_y = (in_order_of_generation(turned.bodies[0], row) for row in (X, Y))
+    x, y = in_order_of_generation(upright.bodies[0], upright.bodies[0].positions)
+    turned_x, turned_y = in_order_of_generation(turned.bodies[0], turned.bodies[0].positions)
     distance = float(np.hypot(turned_x - y, LENGTH - turned_y - x).max())
     return upper_bound(f"{material}: largest distance over height", "1", distance / SIZE, BAND)
 

@@ -6,7 +6,6 @@ import numpy as np
 
 from grainlaw.materials.rheology import shear_modulus
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, SZZ
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error, upper_bound
 from grainlaw.validation.scenes import advance, shipped_simulation
@@ -18,13 +17,13 @@ FULL_CELL = {"grid.cell_size": 0.025}
 
 def elastic_energy(body: Body) -> float:
     """Strain energy p^2/(2 K) + s:s/(4 G) of all points [J/m]."""
-    xx, yy, zz, xy = body.points[[SXX, SYY, SZZ, SXY]]
+    xx, yy, zz, xy = body.stress
     pressure = -(xx + yy + zz) / 3.0
     deviatoric = (xx + pressure) ** 2 + (yy + pressure) ** 2 + (zz + pressure) ** 2 + 2.0 * xy**2
     bulk = body.parameters.bulk_modulus
     shear = shear_modulus(bulk, body.parameters.poisson_ratio)
     density = pressure**2 / (2.0 * bulk) + deviatoric / (4.0 * shear)
-    return float((body.point_mass / body.points[DENSITY] * density).sum())
+    return float((body.volume * density).sum())
 
 
 def momentum(simulation: Simulation) -> np.ndarray:

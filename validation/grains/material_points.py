@@ -9,7 +9,6 @@ import numpy as np
 
 from grainlaw.materials import InputError
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, VX, VY, X, Y
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.model import Scene
@@ -20,10 +19,10 @@ DEPTH = 1.0
 
 def snapshot_of_bodies(time: float, bodies: Sequence[Body], density: float) -> GrainSnapshot:
     """The points of all bodies at a time [s]; `density` of the grains [kg/m3]."""
-    plane = np.concatenate([body.points[[X, Y]] for body in bodies], axis=1)
-    velocity = np.concatenate([body.points[[VX, VY]] for body in bodies], axis=1)
-    volumes = np.concatenate([body.point_mass / body.points[DENSITY] for body in bodies])
-    stress = np.concatenate([body.points[[SXX, SYY, SXY]] for body in bodies], axis=1)
+    plane = np.concatenate([body.positions for body in bodies], axis=1)
+    velocity = np.concatenate([body.velocity for body in bodies], axis=1)
+    volumes = np.concatenate([body.volume for body in bodies])
+    stress = np.concatenate([body.stress[[0, 1, 3]] for body in bodies], axis=1)
     moments = StressMoments(_in_space(plane), -(stress * volumes).T)
     return GrainSnapshot(time, _in_space(plane), _in_space(velocity), _solid_volumes(bodies, density), moments)
 

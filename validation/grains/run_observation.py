@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.layout import X
 from grainlaw.mpm_core.output.recorder import SCENE_NAME
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.scene.initial_state import build_bodies
@@ -23,8 +22,8 @@ def observe_run(folder: Path, width: float, density: float | None = None) -> Obs
     run = RunFolder(folder)
     scene = Scene.load(folder / SCENE_NAME)
     bodies = build_bodies(scene)
-    lowest = min(float(body.points[X].min()) for body in bodies)
-    highest = max(float(body.points[X].max()) for body in bodies)
+    lowest = min(float(body.positions[0].min()) for body in bodies)
+    highest = max(float(body.positions[0].max()) for body in bodies)
     found = grain_density(bodies, density)
     snapshots = snapshots_of_run(run, scene, found)
     center = 0.5 * (lowest + highest)

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
-from grainlaw.mpm_core.layout import X, Y
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.collapses import collapse
 
@@ -101,7 +100,7 @@ def measured_outcome(setting: Setting) -> Outcome:
     simulation.advance_to(END)
     cpu_time = time.process_time() - started
     body = simulation.bodies[0]
-    x, y = np.sort(body.points[X]), np.sort(body.points[Y])
+    x, y = np.sort(body.positions[0]), np.sort(body.positions[1])
     beyond = round(0.5 * (1.0 - MASS_SHARE) * body.count)
     return Outcome(
         points=body.count,

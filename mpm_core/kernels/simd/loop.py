@@ -16,7 +16,7 @@ OPTIONS = (("llvm.loop.vectorize.width", 8), ("llvm.loop.interleave.count", 2))
 
 
 @intrinsic
-def _side_by_side(typing_context: Any, first: Any, last: Any, work: Any, arguments: Any) -> Any:
+def _loop_over_points(typing_context: Any, first: Any, last: Any, work: Any, arguments: Any) -> Any:
     call = work.get_call_type(typing_context, (first, *arguments.types), {})
 
     def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -54,6 +54,6 @@ def _told(module: Any) -> Any:
 
 
 @register_jitable(forceinline=True)
-def side_by_side(first: Any, last: Any, work: Any, arguments: Any) -> None:
+def loop_over_points(first: Any, last: Any, work: Any, arguments: Any) -> None:
     """Call work(p, *arguments) for each point from the first to the one before the last; none depends on another."""
-    _side_by_side(first, last, work, arguments)  # type: ignore[call-arg]
+    _loop_over_points(first, last, work, arguments)  # type: ignore[call-arg]
