@@ -14,6 +14,7 @@ from grainlaw.materials.law import HOOK_VERSION, Law, ParameterSet
 from grainlaw.materials.opening import Contact, after_closing
 from grainlaw.materials.pointwise import pointwise
 from grainlaw.materials.registry import get_material, hookimpl, registry
+from grainlaw.materials.resolution import Resolution
 from grainlaw.materials.rheology import (
     flowing_wave_speed,
     inertial_number,
@@ -47,6 +48,7 @@ __all__ = [
     "Law",
     "Parameter",
     "ParameterSet",
+    "Resolution",
     "SimulationError",
     "StateVariable",
     "SymmetricTensor",

@@ -16,6 +16,7 @@ from grainlaw.materials.declarations import (
     declared_fields,
 )
 from grainlaw.materials.errors import InputError
+from grainlaw.materials.resolution import Resolution
 from grainlaw.materials.tensor import SymmetricTensor, isotropic
 
 # The version of the interface between laws and grainlaw, and the oldest for which a law may have been written. The
@@ -37,6 +38,10 @@ class ParameterSet:
 
 def _no_contradiction(parameters: Any) -> str:
     return ""
+
+
+def _no_resolutions(parameters: Any) -> Mapping[str, Resolution]:
+    return {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +75,8 @@ class Law:
     holds_in_single whether `update` and `sound_speed` hold in single precision: without a loop that ends at a tolerance
                     below 1e-6, nor a difference of numbers that agree to seven digits. Bodies in single precision have
                     other laws computed in double (version 2)
+    resolutions     (parameters) -> how finely a scene has to be resolved for `accuracy = "10%"`, "3%" or "1%"; a scene
+                    that asks for an accuracy without an entry is refused
 
     The functions take and return scalars and NamedTuples, call only `math` and functions marked with
     `pointwise`, and have no side effects.
@@ -93,6 +100,7 @@ class Law:
         Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any, bool]] | None
     ) = None
     holds_in_single: bool = False
+    resolutions: Callable[[Any], Mapping[str, Resolution]] = _no_resolutions
 
     def checked(self, values: dict[str, Any], where: str) -> Any:
         """Parameters of this law from values by name; `where` names their place in messages. Raises InputError."""

@@ -41,6 +41,7 @@ from grainlaw.materials import (
     shear_modulus,
     volumetric_strain_rate,
 )
+from grainlaw.plugins.cam_clay.resolutions import MODIFIED_CAM_CLAY
 from grainlaw.plugins.cam_clay.return_map import CamClay, cam_clay_step, energy_of_cam_clay, log_volume_of_figure_1
 from grainlaw.plugins.cam_clay.small_step import cam_clay_small_step
 
@@ -208,6 +209,7 @@ LAW = Law(
             PAPER._replace(overconsolidation_ratio=4.0), "Table 1, OCR = 4", density_on_compression_line
         ),
     },
+    resolutions=lambda parameters: MODIFIED_CAM_CLAY.get(parameters.overconsolidation_ratio, {}),
     hook_version=2,
 )
 

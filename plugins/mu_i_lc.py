@@ -45,6 +45,7 @@ from grainlaw.materials import (
     stress_ratio,
 )
 from grainlaw.plugins.mu_i.friction import share_after_return
+from grainlaw.plugins.mu_i.resolutions import MU_I_LC
 
 
 class Parameters(NamedTuple):
@@ -174,6 +175,7 @@ LAW = Law(
         ),
     },
     holds_in_single=True,
+    resolutions=lambda parameters: MU_I_LC,
     hook_version=2,
 )
 

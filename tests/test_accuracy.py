@@ -57,16 +57,16 @@ def test_normally_consolidated_clay_has_settings_of_its_own():
     [
         (
             {**clay(1.0), "accuracy": "1%"},
-            "not reached on any grid with modified_cam_clay, overconsolidation_ratio 1; allowed: 10%, 3%",
+            "not reached on any grid with material.modified_cam_clay and its parameters; allowed: 10%, 3%",
         ),
         ({**clay(1.0), "accuracy": "3%"}, "up to 1.5 times as high as wide, not 2.67 times"),
         (
             {**clay(4.0), "accuracy": "3%"},
-            "with modified_cam_clay, overconsolidation_ratio 4; allowed: 10%",
+            "with material.modified_cam_clay and its parameters; allowed: 10%",
         ),
         (
             {**clay(2.0), "accuracy": "10%"},
-            "with modified_cam_clay, overconsolidation_ratio 2; state grid.cell_size and time.safety instead",
+            "with material.modified_cam_clay and its parameters; state grid.cell_size and time.safety instead",
         ),
         ({"accuracy": "10%", "grid.cell_size": None, "grid.upper": [3.1, 1.037]}, "divide the domain"),
         (

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
-from grainlaw.mpm_core.scene.presets import SHORT_BLEND_TIME
+from grainlaw.plugins.mu_i.resolutions import BLEND_TIME_PER_CELL
 from grainlaw.validation.speed_error.setting import Setting
 
 SAFETIES = (0.8, 0.4, 0.2)
@@ -31,9 +31,9 @@ class Reference:
 
 
 REFERENCES = {
-    "mu(I)-LC": Reference((1.0 / 200.0, 1.0 / 220.0, 1.0 / 240.0), memory=SHORT_BLEND_TIME),
+    "mu(I)-LC": Reference((1.0 / 200.0, 1.0 / 220.0, 1.0 / 240.0), memory=BLEND_TIME_PER_CELL),
     "MCC OCR 1": Reference((1.0 / 180.0, 1.0 / 200.0, 1.0 / 220.0)),
-    "MCC OCR 4": Reference((1.0 / 160.0, 1.0 / 180.0, 1.0 / 200.0), 25, SHORT_BLEND_TIME),
+    "MCC OCR 4": Reference((1.0 / 160.0, 1.0 / 180.0, 1.0 / 200.0), 25, BLEND_TIME_PER_CELL),
 }
 # On these points and transfer of the reference are compared too, where they are others than the defaults.
 CELLS_LIKE_REFERENCE = {"mu(I)-LC": (*COARSE_CELLS, FINE_CELL, 1.0 / 120.0, 1.0 / 160.0, 1.0 / 200.0)}
