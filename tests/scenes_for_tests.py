@@ -96,7 +96,7 @@ def set_affine_velocity(body, velocity, gradient):
     """Give all points the velocity v + L x and the gradient L."""
     (vx, vy), gradient = velocity, np.asarray(gradient)
     body.velocity = np.array([[vx], [vy]]) + gradient @ body.positions
-    body.velocity_gradient = body.affine = gradient.reshape(4, 1)
+    body.velocity_gradient = body.affine = gradient[:, :, None]
 
 
 def node_mass_and_momentum(simulation):

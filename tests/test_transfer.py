@@ -28,7 +28,7 @@ def block(basis="quadratic", **changes):
 def test_mass_and_momentum_reach_the_grid_whole(basis, shape, precision, round_off):
     case = block(basis, **{"body.0.shape": shape, "precision": precision})
     (body,) = case.bodies
-    body.affine = np.random.default_rng(1).normal(size=(4, body.count))
+    body.affine = np.random.default_rng(1).normal(size=(2, 2, body.count))
     body.velocity = np.random.default_rng(2).normal(size=(2, body.count))
     brought = momentum(case)
     case.step(INSTANT)

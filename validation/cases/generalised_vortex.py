@@ -58,13 +58,13 @@ def position(places: Array, angle: float, time: float) -> Array:
 
 
 def velocity_gradient_at_start(places: Array, angle: float) -> Array:
-    """Rows xx, xy, yx, yy of grad v for v = w(r) e_z x x with w = g' h: w e_z x 1 + (e_z x x) w' x/r, shape (4, n)."""
+    """grad v for v = w(r) e_z x x with w = g' h: w e_z x 1 + (e_z x x) w' x/r, shape (2, 2, n)."""
     radius, _ = polar(places)
     h, slope, _ = profile(radius)
     rate = swing(angle, 0.0)[1]
     x, y = places
     shear = rate * slope / radius
-    return np.array([-y * x * shear, -rate * h - y * y * shear, rate * h + x * x * shear, x * y * shear])
+    return np.array([[-y * x * shear, -rate * h - y * y * shear], [rate * h + x * x * shear, x * y * shear]])
 
 
 def body_force(places: Array, angle: float, time: float, shear_sign: float = 1.0) -> Array:
