@@ -5,7 +5,7 @@ that keep a clock. What is left of the step belongs to no pass: reports, reducti
 
 The floor of a pass is the larger of two times: its bytes at the bandwidth that a triad reaches on a working set as
 large as the points, and its operations at the arithmetic rate. Bytes are what the pass has to read and write of a
-point's columns; what it moves to and from the grid stays in the first caches and is not counted.
+point's rows; what it moves to and from the grid stays in the first caches and is not counted.
 """
 
 import time
@@ -17,29 +17,26 @@ from typing import Any
 
 from benchmarks.columns import make_steps
 from benchmarks.roofline import Roofline
-from grainlaw.mpm_core import simulation as stepping
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.kernels import grid_update as momentum
-from grainlaw.mpm_core.kernels.wall_clearance import WallClearance
 from grainlaw.mpm_core.simulation import Simulation
 
-# Columns of a point that a pass reads and writes; of the stress pass without the law's state.
-COLUMNS_MOVED = {
+# Rows of a point that a pass reads and writes; of the stress pass without the law's state.
+ROWS_MOVED = {
     # x, v, affine velocity, in-plane stress, density
-    "points to grid": 12,
+    "P2G": 12,
     # reads x, v, affine velocity; writes x, v, L, affine velocity
-    "grid to points": 8 + 12,
+    "G2P": 8 + 12,
     # reads v, L, stress, density; writes stress, density
-    "stress": 11 + 5,
+    "stress update": 11 + 5,
 }
-# What single precision adds: the rests of x, y and density, read and written.
-RESTS_MOVED = {"points to grid": 2, "grid to points": 4, "stress": 2}
-STATE_PASSES = ("stress",)
-# Operations per point, for quadratic splines: stencil and weights, what a point brings or receives, then nine nodes of
+# What single precision adds: the remainders of x, y and density, read and written.
+REMAINDERS_MOVED = {"P2G": 2, "G2P": 4, "stress update": 2}
+STATE_PASSES = ("stress update",)
+# Operations per point, for quadratic splines: stencil and weights, what a point contributes or interpolates, then nine nodes of
 # eight components, of which most steps gather four.
 OPERATIONS = {
-    "points to grid": 45 + 40 + 9 * (8 * 2 + 4),
-    "grid to points": 45 + 80 + 9 * 4 * 4,
+    "P2G": 45 + 40 + 9 * (8 * 2 + 4),
+    "G2P": 45 + 80 + 9 * 4 * 4,
 }
 
 
@@ -75,11 +72,11 @@ def pass_times(simulation: Simulation, steps: int, roofline: Roofline) -> list[P
 
 
 def _floor(name: str, body: Body, roofline: Roofline) -> float | None:
-    if name not in COLUMNS_MOVED:
+    if name not in ROWS_MOVED:
         return None
-    columns = COLUMNS_MOVED[name] + (2 * len(body.law.state._fields) if name in STATE_PASSES else 0)
-    rests = RESTS_MOVED[name] if body.precision == "single" else 0
-    bytes_moved = (columns + rests) * body.points.itemsize
+    rows = ROWS_MOVED[name] + (2 * len(body.law.state._fields) if name in STATE_PASSES else 0)
+    remainders = REMAINDERS_MOVED[name] if body.precision == "single" else 0
+    bytes_moved = (rows + remainders) * body.points.itemsize
     moving = bytes_moved / roofline.bandwidth(body.points.nbytes)
     return 1e9 * max(moving, OPERATIONS.get(name, 0) / roofline.arithmetic_rates[body.precision])
 
@@ -87,27 +84,22 @@ def _floor(name: str, body: Body, roofline: Roofline) -> float | None:
 @contextmanager
 def _clocks(simulation: Simulation) -> "Iterator[dict[str, float]]":
     """Clocks around the functions that a step calls; yields the seconds of each pass, which grow while it runs."""
-    places: list[tuple[Any, str, str]] = [
-        (momentum, "clear", "grid"),
-        (momentum, "update_nodes", "grid"),
-        (stepping, "hold_at_walls", "grid"),
-        (WallClearance, "gaps", "grid"),
+    timed: list[tuple[Any, str, str]] = [
+        (simulation, "_clear_nodes", "grid update"),
+        (simulation, "_p2g", "P2G"),
+        (simulation, "_update_grid", "grid update"),
+        (simulation, "_g2p", "G2P"),
+        (simulation, "_update_stress", "stress update"),
+        *((body, "sort", "sorting") for body in simulation.bodies),
     ]
-    for body in simulation.bodies:
-        places += [
-            (body, "sort", "sorting"),
-            (body, "to_grid", "points to grid"),
-            (body, "from_grid", "grid to points"),
-            (body, "update_stress", "stress"),
-        ]
     seconds: dict[str, float] = defaultdict(float)
-    originals = [getattr(owner, attribute) for owner, attribute, _ in places]
-    for (owner, attribute, name), original in zip(places, originals, strict=True):
+    originals = [getattr(owner, attribute) for owner, attribute, _ in timed]
+    for (owner, attribute, name), original in zip(timed, originals, strict=True):
         setattr(owner, attribute, _with_clock(original, name, seconds))
     try:
         yield seconds
     finally:
-        for (owner, attribute, _), original in zip(places, originals, strict=True):
+        for (owner, attribute, _), original in zip(timed, originals, strict=True):
             setattr(owner, attribute, original)
 
 

@@ -7,19 +7,19 @@ from collections.abc import Iterator
 import numpy as np
 
 from grainlaw.materials import SimulationError
-from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.failures import LARGEST_INCREMENT, failure_outside, failure_too_small, failure_unsound
 from grainlaw.mpm_core.grid.active_nodes import ActiveNodes, find_active_nodes, no_active_nodes
 from grainlaw.mpm_core.grid.grid import Grid
-from grainlaw.mpm_core.kernels import grid_update as momentum
+from grainlaw.mpm_core.grid.periodic import join_periodic
 from grainlaw.mpm_core.kernels.body_force import BodyForce, scatter_body_force
 from grainlaw.mpm_core.kernels.elastic_energy import elastic_energy
+from grainlaw.mpm_core.kernels.grid_update import clear_nodes, update_nodes
 from grainlaw.mpm_core.kernels.held_nodes import hold_nodes
 from grainlaw.mpm_core.kernels.shape_functions import BASES
 from grainlaw.mpm_core.kernels.step_report import StepReport, step_report, together
 from grainlaw.mpm_core.kernels.volume_coupling import STEPS_PER_COUPLING
 from grainlaw.mpm_core.kernels.wall_clearance import WallClearance
-from grainlaw.mpm_core.kernels.walls import SIDES, Wall, WallKind, active_rows, hold_at_walls, join_periodic
-from grainlaw.mpm_core.layout import LXX, LYY, X, Y
+from grainlaw.mpm_core.kernels.walls import SIDES, Wall, WallKind, active_rows, hold_at_walls
 from grainlaw.mpm_core.ledger import Ledger
 from grainlaw.mpm_core.output.fields import chosen_fields
 from grainlaw.mpm_core.parallel.sorting import LONGEST_DRIFT
@@ -32,13 +32,8 @@ from grainlaw.mpm_core.stepping.time_step import (
     LARGEST_STRAIN,
     SMALLEST_SHARE,
     signal_bounds,
-    signal_speeds,
     strain_rates,
-    what_sets_the_step,
 )
-
-# A volumetric strain increment beyond which no explicit step can be right.
-LARGEST_INCREMENT = 0.5
 
 
 class Simulation:
@@ -103,34 +98,48 @@ class Simulation:
         Velocities belong to the middles of steps, and the forces at the end of one step act from its middle to that of
         the next, however long that is: with less, energy would come from steps that shrink as a body stiffens.
         """
-        grid = self.grid
-        kick = 0.5 * (self.last_step + dt)
-        coupled_time = STEPS_PER_COUPLING * dt if self.steps % STEPS_PER_COUPLING == 0 else 0.0
+        couples_volumes = self.steps % STEPS_PER_COUPLING == 0
         self._sort_if_drifted()
         self._clear_nodes()
-        for body in self.bodies:
-            body.p2g(grid, self.threads)
-            if self.body_force is not None:
-                scatter_body_force(body, self.body_force(body, self.time), grid, self.basis)
-        for axis in self.periodic_axes:
-            join_periodic(grid.nodes, grid, axis)
-        momentum.update_nodes(grid, self.active, self.scene.gravity, kick, couples=coupled_time > 0.0)
-        taken = hold_at_walls(grid, self.wall_clearance.rows, self.wall_clearance.clearances(), dt)
-        self.ledger.wall_work += taken.work
-        self.ledger.wall_friction += taken.friction
-        hold_nodes(grid, self.held_nodes)
-        if self.sleep is not None:
-            self.sleep.hold(self.active)
-        for body in self.bodies:
-            body.g2p(grid, dt, self._flip_fraction(dt), self.threads, couples=coupled_time > 0.0)
-        for body in self.bodies:
-            body.update_stress(dt, coupled_time, coupled_time / self.scene.transfer.time_constant, self.threads)
+        self._p2g()
+        self._update_grid(dt, couples_volumes)
+        self._g2p(dt, couples_volumes)
+        self._update_stress(dt, couples_volumes)
         self.time += dt
         self.last_step = dt
         self.steps += 1
         self._take_reports(dt)
         if self.sleep is not None:
             self._let_sleep(self.sleep)
+
+    def _p2g(self) -> None:
+        for body in self.bodies:
+            body.p2g(self.grid, self.threads)
+            if self.body_force is not None:
+                scatter_body_force(body, self.body_force(body, self.time), self.grid, self.basis)
+        for axis in self.periodic_axes:
+            join_periodic(self.grid, axis)
+
+    def _update_grid(self, dt: float, couples_volumes: bool) -> None:
+        """Solve the momentum equation on the nodes, then walls, held nodes and sleepers have their say."""
+        kick = 0.5 * (self.last_step + dt)
+        update_nodes(self.grid, self.active, self.scene.gravity, kick, couples_volumes)
+        taken = hold_at_walls(self.grid, self.wall_clearance.rows, self.wall_clearance.clearances(), dt)
+        self.ledger.wall_work += taken.work
+        self.ledger.wall_friction += taken.friction
+        hold_nodes(self.grid, self.held_nodes)
+        if self.sleep is not None:
+            self.sleep.hold(self.active)
+
+    def _g2p(self, dt: float, couples_volumes: bool) -> None:
+        for body in self.bodies:
+            body.g2p(self.grid, dt, self._flip_fraction(dt), self.threads, couples_volumes)
+
+    def _update_stress(self, dt: float, couples_volumes: bool) -> None:
+        coupled_time = STEPS_PER_COUPLING * dt if couples_volumes else 0.0
+        exchange = coupled_time / self.scene.transfer.time_constant
+        for body in self.bodies:
+            body.update_stress(dt, coupled_time, exchange, self.threads)
 
     def advance_to(self, time: float) -> None:
         """Step to a time [s], with the steps of the scene. Raises SimulationError as `step` and `next_step` do."""
@@ -156,15 +165,18 @@ class Simulation:
         stable = self.critical_time_step()
         largest = self.scene.time.step or self.adaptive_step()
         if largest > stable:
-            where = f"t = {self.time:.6g} s, step {self.steps}"
-            raise SimulationError(
-                f"{where}: the fixed step {largest:.4g} s is above the stable one, now {stable:.4g} s"
-            )
+            too_large = f"the fixed step {largest:.4g} s is above the stable one, now {stable:.4g} s"
+            raise SimulationError(f"{self._when}: {too_large}")
         if largest < self.smallest_step:
-            self._fail_too_small(largest)
+            is_by_strain = largest < self.scene.time.safety * stable
+            raise failure_too_small(self._when, self.bodies, largest, self.smallest_step, is_by_strain)
         remaining = target - self.time
         count = max(1, math.ceil(remaining / largest * (1.0 - 1e-12)))
         return remaining / count, target if count == 1 else None
+
+    @property
+    def _when(self) -> str:
+        return f"t = {self.time:.6g} s, step {self.steps}"
 
     def critical_time_step(self) -> float:
         """The largest stable step [s] at the present state: a cell over the fastest signal; infinite without any."""
@@ -174,15 +186,6 @@ class Simulation:
         """The safe share of the stable step [s], or less, so that no point is strained too much in one step."""
         stable = self.scene.time.safety * self.critical_time_step()
         return min(stable, LARGEST_STRAIN / self.strain_rate) if self.strain_rate > 0.0 else stable
-
-    def _fail_too_small(self, step: float) -> None:
-        """Stop a run whose step would have to be this small [s], naming the point that asks for it."""
-        by_strain = step < self.scene.time.safety * self.critical_time_step()
-        reason = strain_rates if by_strain else signal_speeds
-        body = max(self.bodies, key=lambda found: float(reason(found).max()))
-        point, words = what_sets_the_step(body, reason)
-        asked = f"the step would have to shrink to {step:.3g} s, below the smallest one, {self.smallest_step:.3g} s"
-        self._fail(body, point, f"{asked} (time.smallest_step): {words}")
 
     def _signal_speed(self, reported: list[tuple[float, float]]) -> float:
         """The speed [m/s] that bounds the step, from the fastest signal and the fastest point of each body."""
@@ -203,7 +206,7 @@ class Simulation:
         if self.sleep is not None and self.sleep.has_sleepers:
             self.sleep.lay_on_grid(self.active)
         else:
-            momentum.clear(self.grid.nodes, self.grid, self.active)
+            clear_nodes(self.grid.nodes, self.grid, self.active)
 
     def _sort_if_drifted(self) -> None:
         if self.drift > LONGEST_DRIFT * self.grid.cell_size:
@@ -238,7 +241,7 @@ class Simulation:
 
     def keep_to(self, active: ActiveNodes) -> None:
         """Work on these nodes until the next sort, and leave zeros everywhere else."""
-        momentum.clear(self.grid.nodes, self.grid, self.active)
+        clear_nodes(self.grid.nodes, self.grid, self.active)
         self.active = active
         self.wall_clearance = self._wall_clearance()
 
@@ -250,7 +253,7 @@ class Simulation:
         reports = [step_report(body.transfer_reports, body.stress_reports) for body in self.bodies]
         for body, report in zip(self.bodies, reports, strict=True):
             if not (report.increment < LARGEST_INCREMENT and report.signal_speed < math.inf):
-                self._fail_unsound(body, dt)
+                raise failure_unsound(self._when, body, dt)
         whole = together(reports)
         self._refuse_lost_points(whole)
         self.drift += dt * whole.fastest
@@ -272,31 +275,7 @@ class Simulation:
         for axis, (lowest, highest) in enumerate(limits):
             is_lost = lowest < self.grid.lower[axis] or highest > self.grid.upper[axis]
             if is_lost and axis not in self.periodic_axes:
-                self._fail_outside(axis)
-
-    def _fail_outside(self, axis: int) -> None:
-        for body in self.bodies:
-            coordinate = body.positions[axis]
-            outside = (coordinate < self.grid.lower[axis]) | (coordinate > self.grid.upper[axis])
-            if outside.any():
-                self._fail(body, int(np.argmax(outside)), "the point has left the domain")
-
-    def _fail_unsound(self, body: Body, dt: float) -> None:
-        finite = np.isfinite(body.points).all(axis=0)
-        if not finite.all():
-            self._fail(body, int(np.argmin(finite)), "the stress or another quantity is not finite")
-        increments = dt * np.abs(body.points[LXX] + body.points[LYY])
-        worst = int(np.argmax(increments))
-        if increments[worst] < LARGEST_INCREMENT:
-            self._fail(body, worst, "the law's sound speed is not finite")
-        self._fail(body, worst, f"its volume changed by {increments[worst]:.0%} in one step of {dt:.3g} s")
-
-    def _fail(self, body: Body, point: int, reason: str) -> None:
-        x, y = body.points[X, point], body.points[Y, point]
-        raise SimulationError(
-            f"t = {self.time:.6g} s, step {self.steps}: point {body.ids[point]} of {body.name} ({body.law.name}) "
-            f"at ({x:.6g}, {y:.6g}) m: {reason}"
-        )
+                raise failure_outside(self._when, self.bodies, axis, self.grid.lower[axis], self.grid.upper[axis])
 
 
 def _walls(scene: Scene) -> list[Wall]:

@@ -23,7 +23,7 @@ from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.kernels.volume_coupling import overfill_of
 
 
-def clear(nodes: NDArray[np.float64], grid: Grid, active: ActiveNodes) -> None:
+def clear_nodes(nodes: NDArray[np.float64], grid: Grid, active: ActiveNodes) -> None:
     """Zero the active nodes, of the grid or of another array like its nodes."""
     _clear(nodes, grid.shape[1], active)
 

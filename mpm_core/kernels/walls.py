@@ -1,4 +1,4 @@
-"""Walls on the sides of the domain, and periodic sides.
+"""Walls on the sides of the domain.
 
 A wall lies on a line of nodes. The shape functions interpolate there (see `basis`), so that the velocity of the wall
 row is the velocity of the material at the wall, and all that a wall does is done to that row.
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from grainlaw.materials.compilation import named
 from grainlaw.mpm_core.grid.active_nodes import ActiveNodes
-from grainlaw.mpm_core.grid.grid import COMPONENTS, GHOSTS, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, Grid
+from grainlaw.mpm_core.grid.grid import GHOSTS, MASS, NEW_VX, NEW_VY, OLD_VX, OLD_VY, Grid
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 
 
@@ -149,21 +149,3 @@ def _hold(nodes, rows, clearances, dt):  # type: ignore[no-untyped-def]
                 sliding = old_tangential + tangential - 2.0 * wall_velocity
                 dissipated += 0.5 * mass * (free_tangential - tangential) * sliding
     return taken, dissipated
-
-
-def join_periodic(nodes: NDArray[np.float64], grid: Grid, axis: int) -> None:
-    """Add up the nodes that are one and the same across a periodic axis, and give all copies the sum."""
-    _join(nodes, grid.strides[axis], grid.strides[1 - axis], grid.shape[axis], grid.shape[1 - axis], grid.cells[axis])
-
-
-@njit(cache=True)
-@named(CORE_MARK)
-def _join(nodes, across, along, rows, count, period):  # type: ignore[no-untyped-def]
-    for low in range(rows - period):
-        for k in range(count):
-            a = low * across + k * along
-            b = a + period * across
-            for c in range(COMPONENTS):
-                total = nodes[a + c] + nodes[b + c]
-                nodes[a + c] = total
-                nodes[b + c] = total

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.grid.active_nodes import ActiveNodes, find_active_nodes, no_active_nodes
 from grainlaw.mpm_core.grid.grid import Grid
-from grainlaw.mpm_core.kernels.grid_update import clear
+from grainlaw.mpm_core.kernels.grid_update import clear_nodes
 from grainlaw.mpm_core.kernels.shape_functions import Basis
 from grainlaw.mpm_core.kernels.simd.registers import MOST_AT_ONCE
 from grainlaw.mpm_core.kernels.sleepers import (
@@ -126,7 +126,7 @@ class Sleep:
 
     def bring_sleepers(self) -> None:
         """Scatter anew what the sleeping points bring, after some woke or fell asleep."""
-        clear(self.nodes, self.grid, self.active)
+        clear_nodes(self.nodes, self.grid, self.active)
         self.active = find_active_nodes([body.points_asleep for body in self.bodies], self.grid, self.basis, ())
         for body in self.bodies:
             body.p2g_of_sleepers(self.nodes, self.grid)

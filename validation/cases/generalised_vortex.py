@@ -58,7 +58,7 @@ def position(places: Array, angle: float, time: float) -> Array:
 
 
 def velocity_gradient_at_start(places: Array, angle: float) -> Array:
-    """grad v for v = w(r) e_z x x with w = g' h: w e_z x 1 + (e_z x x) w' x/r, shape (2, 2, n)."""
+    """Grad v for v = w(r) e_z x x with w = g' h: w e_z x 1 + (e_z x x) w' x/r, shape (2, 2, n)."""
     radius, _ = polar(places)
     h, slope, _ = profile(radius)
     rate = swing(angle, 0.0)[1]
