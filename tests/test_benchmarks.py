@@ -32,7 +32,7 @@ def test_one_command_measures_prints_and_stores_everything(tmp_path):
             assert title in done.stdout
             assert f"### {title}" in page
     (passes,) = numbers["passes"].values()
-    assert {"grid", "points to grid", "grid to points", "stress", "rest"} <= {found["name"] for found in passes}
+    assert {"grid update", "P2G", "G2P", "stress update", "rest"} <= {found["name"] for found in passes}
     assert sum(found["share"] for found in passes) == pytest.approx(1.0)
     (race,) = numbers["yardstick"].values()
     assert race[-1]["name"] == "yardstick"
