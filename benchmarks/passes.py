@@ -32,8 +32,8 @@ ROWS_MOVED = {
 # What single precision adds: the remainders of x, y and density, read and written.
 REMAINDERS_MOVED = {"P2G": 2, "G2P": 4, "stress update": 2}
 STATE_PASSES = ("stress update",)
-# Operations per point, for quadratic splines: stencil and weights, what a point contributes or interpolates, then nine nodes of
-# eight components, of which most steps gather four.
+# Operations per point, for quadratic splines: stencil and weights, what a point contributes or interpolates, then nine
+# nodes of eight components, of which most steps gather four.
 OPERATIONS = {
     "P2G": 45 + 40 + 9 * (8 * 2 + 4),
     "G2P": 45 + 80 + 9 * 4 * 4,

@@ -235,8 +235,8 @@ class Body:
         """
         fastest = float(self.stress_reports[:, MAX_SIGNAL_SPEED].max(initial=self.signal_speed_asleep))
         self.signal_speed_asleep = fastest if asleep.any() else 0.0
-        for columns in (slice(VX, VY + 1), GRADIENT, AFFINE):
-            self.points[columns, asleep] = 0.0
+        for rows in (slice(VX, VY + 1), GRADIENT, AFFINE):
+            self.points[rows, asleep] = 0.0
         first = int(np.argmax(asleep))
         order = np.argsort(asleep[first:], kind="stable").astype(np.int32)
         reorder(self.storage, self.ids, first, order)

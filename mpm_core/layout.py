@@ -1,8 +1,8 @@
-"""The columns of the point array: one contiguous row of memory per quantity, the same order for every law.
+"""The rows of the point array: one contiguous row of memory per quantity, the same order for every law.
 
 The law's state variables follow after `FIRST_STATE`, in the order of its declaration, and the accumulated shear strain
 after them, where a scene writes it. Points in single precision end with what singles leave out of what grows by steps
-that are small beside it: density and places.
+that are small beside it: density and positions.
 """
 
 from typing import Any
@@ -39,8 +39,8 @@ REMAINDERS = ("density_remainder", "x_remainder", "y_remainder")
 CACHE_LINE = 64
 
 
-def allocate(columns: int, points: int, precision: str = "double") -> NDArray[Any]:
-    """Zeroed rows for some points, in whole cache lines, that do not fall on the same cache sets.
+def allocate(rows: int, points: int, precision: str = "double") -> NDArray[Any]:
+    """Zeroed rows of numbers for some points, in whole cache lines, that do not fall on the same cache sets.
 
     Rows a multiple of 4096 bytes apart would evict one another; an odd number of cache lines between them cannot.
     """
@@ -48,4 +48,4 @@ def allocate(columns: int, points: int, precision: str = "double") -> NDArray[An
     per_line = CACHE_LINE // np.dtype(number).itemsize
     lines = -(-points // per_line)
     lines += 1 - lines % 2
-    return np.zeros((columns, lines * per_line), number)
+    return np.zeros((rows, lines * per_line), number)

@@ -266,7 +266,7 @@ class Simulation:
         gravity_x, gravity_y = self.scene.gravity
         self.ledger.count(
             kinetic=whole.kinetic,
-            risen=-dt * (gravity_x * whole.moved_x + gravity_y * whole.moved_y),
+            risen=-dt * (gravity_x * whole.momentum_x + gravity_y * whole.momentum_y),
             worked=whole.internal_work,
         )
 

@@ -52,7 +52,7 @@ from grainlaw.mpm_core.parallel.blocks import points_of_block
 from grainlaw.mpm_core.parallel.work_sharing import chunk_ranges, next_chunk, threads_of
 
 # What `g2p` reports for each block of points.
-KINETIC_ENERGY, LOWEST_X, HIGHEST_X, LOWEST_Y, HIGHEST_Y, MAX_SPEED, MOVED_X, MOVED_Y = range(8)
+KINETIC_ENERGY, LOWEST_X, HIGHEST_X, LOWEST_Y, HIGHEST_Y, MAX_SPEED, MOMENTUM_X, MOMENTUM_Y = range(8)
 REPORTS = 8
 
 
@@ -89,8 +89,8 @@ class Sums(NamedTuple):
     """What is reported, over the points so far, in as many lanes as points are taken at once, as doubles."""
 
     twice_energy: Any
-    moved_x: Any
-    moved_y: Any
+    advection_x: Any
+    advection_y: Any
     fastest_squared: Any
     lowest_x: Any
     highest_x: Any
@@ -106,19 +106,19 @@ def no_sums(like):  # type: ignore[no-untyped-def]
 
 
 @register_jitable(forceinline=True)
-def added_to_sums(sums, twice_energy, moved_x, moved_y, x, y, count, at_once):  # type: ignore[no-untyped-def]
+def added_to_sums(sums, twice_energy, advection_x, advection_y, x, y, count, at_once):  # type: ignore[no-untyped-def]
     """The sums with some points more, of which only the first `count` exist."""
     lowest_x, lowest_y, highest_x, highest_y = x, y, x, y
     if count < at_once:
         twice_energy = first_lanes(twice_energy, count, 0.0)
-        moved_x, moved_y = first_lanes(moved_x, count, 0.0), first_lanes(moved_y, count, 0.0)
+        advection_x, advection_y = first_lanes(advection_x, count, 0.0), first_lanes(advection_y, count, 0.0)
         lowest_x, lowest_y = first_lanes(x, count, np.inf), first_lanes(y, count, np.inf)
         highest_x, highest_y = first_lanes(x, count, -np.inf), first_lanes(y, count, -np.inf)
     return Sums(
         sums.twice_energy + twice_energy,
-        sums.moved_x + moved_x,
-        sums.moved_y + moved_y,
-        greater(sums.fastest_squared, moved_x * moved_x + moved_y * moved_y),
+        sums.advection_x + advection_x,
+        sums.advection_y + advection_y,
+        greater(sums.fastest_squared, advection_x * advection_x + advection_y * advection_y),
         lesser(sums.lowest_x, lowest_x),
         greater(sums.highest_x, highest_x),
         lesser(sums.lowest_y, lowest_y),
@@ -133,9 +133,9 @@ def report(reports, block, point_mass, sums):  # type: ignore[no-untyped-def]
     reports[block, LOWEST_X], reports[block, HIGHEST_X] = smallest(sums.lowest_x), largest(sums.highest_x)
     reports[block, LOWEST_Y], reports[block, HIGHEST_Y] = smallest(sums.lowest_y), largest(sums.highest_y)
     reports[block, MAX_SPEED] = np.sqrt(largest(sums.fastest_squared))
-    reports[block, MOVED_X], reports[block, MOVED_Y] = (
-        point_mass * total(sums.moved_x),
-        point_mass * total(sums.moved_y),
+    reports[block, MOMENTUM_X], reports[block, MOMENTUM_Y] = (
+        point_mass * total(sums.advection_x),
+        point_mass * total(sums.advection_y),
     )
 
 
@@ -206,14 +206,14 @@ def advected(rows, first, last, at_once, dt, flip_fraction, velocities, energies
         velocity_x = scaled_sum(flip_fraction, several_at(vx, p) - old_vx, new_vx)
         velocity_y = scaled_sum(flip_fraction, several_at(vy, p) - old_vy, new_vy)
         x, y = position_at(rows, p)
-        moved_x, moved_y = widened(new_vx), widened(new_vy)
-        new_x, new_y = scaled_sum(dt, moved_x, x), scaled_sum(dt, moved_y, y)
+        advection_x, advection_y = widened(new_vx), widened(new_vy)
+        new_x, new_y = scaled_sum(dt, advection_x, x), scaled_sum(dt, advection_y, y)
         put(vx, p, velocity_x)
         put(vy, p, velocity_y)
         put_position(rows, p, new_x, new_y)
         twice_energy = velocity_x * velocity_x + velocity_y * velocity_y + several_at(energies, p - first)
         count = float(last - p)
-        sums = added_to_sums(sums, widened(twice_energy), moved_x, moved_y, new_x, new_y, count, at_once)
+        sums = added_to_sums(sums, widened(twice_energy), advection_x, advection_y, new_x, new_y, count, at_once)
     return sums
 
 

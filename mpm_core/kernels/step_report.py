@@ -15,8 +15,8 @@ from grainlaw.mpm_core.kernels.g2p import (
     LOWEST_X,
     LOWEST_Y,
     MAX_SPEED,
-    MOVED_X,
-    MOVED_Y,
+    MOMENTUM_X,
+    MOMENTUM_Y,
 )
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.kernels.stress_update import INTERNAL_WORK, MAX_INCREMENT, MAX_SIGNAL_SPEED
@@ -27,7 +27,7 @@ class StepReport(NamedTuple):
 
     lowest_x ... highest_y  corners of its bounding box [m]
     kinetic                 energy [J/m]
-    moved_x, moved_y        momentum of the motion of the points [kg/s]
+    momentum_x, momentum_y        momentum of the motion of the points [kg/s]
     internal_work           of the stress on the strain [J/m]
     fastest                 speed at which a point moved [m/s]
     signal_speed            largest sum of sound speed and speed [m/s]
@@ -39,8 +39,8 @@ class StepReport(NamedTuple):
     lowest_y: float
     highest_y: float
     kinetic: float
-    moved_x: float
-    moved_y: float
+    momentum_x: float
+    momentum_y: float
     internal_work: float
     fastest: float
     signal_speed: float
@@ -69,8 +69,8 @@ def together(reports: list[StepReport]) -> StepReport:
         lowest_y=min(each.lowest_y),
         highest_y=max(each.highest_y),
         kinetic=sum(each.kinetic),
-        moved_x=sum(each.moved_x),
-        moved_y=sum(each.moved_y),
+        momentum_x=sum(each.momentum_x),
+        momentum_y=sum(each.momentum_y),
         internal_work=sum(each.internal_work),
         fastest=max(each.fastest),
         signal_speed=max(each.signal_speed),
@@ -96,8 +96,8 @@ def _combined(transfer, stress):  # type: ignore[no-untyped-def]
         transfer[:, LOWEST_Y].min(),
         transfer[:, HIGHEST_Y].max(),
         transfer[:, KINETIC_ENERGY].sum(),
-        transfer[:, MOVED_X].sum(),
-        transfer[:, MOVED_Y].sum(),
+        transfer[:, MOMENTUM_X].sum(),
+        transfer[:, MOMENTUM_Y].sum(),
         stress[:, INTERNAL_WORK].sum(),
         transfer[:, MAX_SPEED].max(),
         signal_speed,

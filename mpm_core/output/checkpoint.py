@@ -46,7 +46,7 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
             group.create_dataset("points", data=body.points)
             group.create_dataset("ids", data=body.ids)
             group.create_dataset("stripe_starts", data=body.stripe_starts)
-            group.attrs.update(law=body.law.name, columns=", ".join(body.row_names))
+            group.attrs.update(law=body.law.name, rows=", ".join(body.row_names))
             group.attrs.update(awake=body.awake, signal_speed_asleep=body.signal_speed_asleep)
         if simulation.sleep is not None:
             sleep = file.create_group("sleep")

@@ -13,7 +13,7 @@ from grainlaw.mpm_core.scene.shapes import lattice
 
 
 def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
-    """The bodies of a scene, with or without a column for the shear strain.
+    """The bodies of a scene, with or without a row for the shear strain.
 
     Raises InputError for empty, overlapping or misplaced ones.
     """
@@ -63,9 +63,9 @@ def _build(
 ) -> Body:
     law = scene.law(section.material)
     parameters = scene.parameters(section.material)
-    rests = len(REMAINDERS) if scene.precision == "single" else 0
-    columns = FIRST_STATE + len(law.state._fields) + keeps_shear_strain + rests
-    storage = allocate(columns, len(positions), scene.precision)
+    remainders = len(REMAINDERS) if scene.precision == "single" else 0
+    rows = FIRST_STATE + len(law.state._fields) + keeps_shear_strain + remainders
+    storage = allocate(rows, len(positions), scene.precision)
     points = storage[:, : len(positions)]
     put_positions(points, positions.T)
     points[VX], points[VY] = section.velocity
@@ -101,7 +101,7 @@ def _depth(positions: NDArray[np.float64], spacing: float) -> NDArray[np.float64
 
 
 def _initialise_state(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64]) -> None:
-    """Fill the columns of the law's state, one call for each distinct initial stress of some points."""
+    """Fill the rows of the law's state, one call for each distinct initial stress of some points."""
     states = points[FIRST_STATE : FIRST_STATE + len(law.state._fields)]
     for start in range(0, points.shape[1], POINTS_AT_ONCE):
         block = slice(start, start + POINTS_AT_ONCE)

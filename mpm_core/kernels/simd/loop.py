@@ -2,7 +2,7 @@
 
 What a law does at a point mostly waits for its own last operation, a root or a division, while points do not wait for
 one another. That several fit into a register the compiler sees; that it pays to have several registers under way it
-does not see, as the loop is long. It is told so for this loop, in what LLVM keeps about it.
+does not see, as the loop is long. Metadata of this loop tells it so.
 """
 
 from typing import Any
@@ -32,14 +32,14 @@ def _loop_over_points(typing_context: Any, first: Any, last: Any, work: Any, arg
         point.add_incoming(begin, before)
         point.add_incoming(following, builder.block)
         again = builder.cbranch(builder.icmp_unsigned("<", following, end), loop, after)
-        again.set_metadata("llvm.loop", _told(builder.module))
+        again.set_metadata("llvm.loop", _loop_metadata(builder.module))
         builder.position_at_end(after)
         return context.get_dummy_value()
 
     return types.void(first, first, work, arguments), generate
 
 
-def _told(module: Any) -> Any:
+def _loop_metadata(module: Any) -> Any:
     """A node with the options of a loop; it has to begin with itself."""
     options = [
         module.add_metadata([ir.MetaDataString(module, name), ir.Constant(ir.IntType(32), value)])
