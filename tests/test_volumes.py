@@ -30,7 +30,7 @@ def pressures(body):
 
 
 @pytest.mark.parametrize("name", list(BASES))
-def test_the_room_of_a_node_is_the_integral_of_its_shape_function_over_the_domain(name):
+def test_the_width_of_a_node_is_the_integral_of_its_shape_function_over_the_domain(name):
     basis, cells, fine = BASES[name], 8, 2000
     grid = Grid((0.0, 0.0), (cells, cells), 1.0, wall_node_fraction=basis.wall_node_fraction)
     stencil = make_stencil(basis)
@@ -39,7 +39,7 @@ def test_the_room_of_a_node_is_the_integral_of_its_shape_function_over_the_domai
         first, _, weights, _, _ = stencil(coordinate, *grid.ghosts[:2])
         integrals[first : first + basis.width] += np.array(weights) / fine
     inside = slice(GHOSTS, GHOSTS + cells + 1)
-    np.testing.assert_allclose(integrals[inside], grid.rooms[0][inside], atol=1e-6)
+    np.testing.assert_allclose(integrals[inside], grid.node_widths[0][inside], atol=1e-6)
 
 
 def test_a_lattice_that_fills_the_domain_is_not_crowded():
