@@ -1,12 +1,11 @@
 """Compiling a law: the same plain functions, made callable from njit code and cached on disk.
 
 The disk cache of the compiler is keyed on the name and the file of the generated function and on what it closes over. A
-compiled law therefore closes over its plain functions and carries in its name a hash of every source that they call: an
-edited law recompiles, an unedited one loads from disk.
+compiled law therefore closes over its plain functions and carries in its name a mark of everything that they reach
+(`reached`) and of all that is compiled around them: an edited law recompiles, an unedited one loads from disk.
 """
 
 import hashlib
-import inspect
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -20,10 +19,17 @@ from numba.extending import intrinsic, overload, register_jitable
 
 from grainlaw.materials.elementary import fused
 from grainlaw.materials.errors import InputError
+from grainlaw.materials.kernel_cache import use_kernel_cache
 from grainlaw.materials.law import Law
 from grainlaw.materials.pointwise import MARKED
+from grainlaw.materials.reached import digest_of_reached
 from grainlaw.materials.single_precision import in_single
 
+use_kernel_cache()
+
+# Any of these may be compiled into a law or a kernel, or decide how that is done.
+MATERIALS_FILES = tuple(Path(__file__).parent.glob("*.py"))
+MARK_LENGTH = 14
 _CAUSE = re.compile(r"Untyped global|Unknown attribute|NameError|nsupported|not supported|Cannot unify|Invalid use")
 
 
@@ -67,22 +73,31 @@ def named(mark: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     return rename
 
 
-def mark_of_sources(files: Iterable[Path], modules: Iterable[str] = ()) -> str:
-    """A mark for `named` that changes with the content of the files and the names of the modules.
+def mark_of_sources(files: Iterable[Path]) -> str:
+    """A mark for `named` that changes with the names and the content of files and of all of `materials`.
 
     The disk cache notices an edit of the file that holds a kernel, but not of what the kernel takes from other files.
-    It refers to NamedTuples by the modules that define them: what another module with the same content has left there
-    cannot be read.
     """
-    digest = hashlib.sha256(repr(sorted(modules)).encode())
-    for path in sorted(files):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:14]
+    digest = hashlib.sha256()
+    for path in sorted({*files, *MATERIALS_FILES}):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:MARK_LENGTH]
+
+
+def mark_of_reached(things: Iterable[object]) -> str:
+    """A mark for `named` that changes with everything that functions and classes reach, and with all of `materials`."""
+    text = digest_of_reached(things) + _materials_mark()
+    return hashlib.sha256(text.encode()).hexdigest()[:MARK_LENGTH]
+
+
+@cache
+def _materials_mark() -> str:
+    return mark_of_sources(())
 
 
 @dataclass(frozen=True)
 class PointwiseLaw:
-    """A law's functions, callable from compiled code, and the mark of all the sources behind them.
+    """A law's functions, callable from compiled code, and the mark of all that can change what they compile to.
 
     The precision is that of the numbers that `update`, `sound_speed` and `small_step` take and return; the others take
     doubles.
@@ -98,23 +113,6 @@ class PointwiseLaw:
     small_step: Callable[..., Any] | None
     stored_energy: Callable[..., Any] | None
     mark: str
-
-
-def _source_files(functions: Iterable[Callable[..., Any]]) -> set[Path]:
-    """The files of these functions and of every marked function that they call, directly or not."""
-    marked = set(MARKED)
-    files: set[Path] = set()
-    seen: set[Callable[..., Any]] = set()
-    pending = list(functions)
-    while pending:
-        function = pending.pop()
-        if function in seen:
-            continue
-        seen.add(function)
-        files.add(Path(inspect.getfile(function)))
-        named = (function.__globals__.get(name) for name in function.__code__.co_names)
-        pending.extend(found for found in named if inspect.isfunction(found) and found in marked)
-    return files
 
 
 def registered(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -136,14 +134,10 @@ def _name_by_module(kind: type[Any]) -> None:
 def pointwise_law(law: Law, precision: str = "double") -> PointwiseLaw:
     """The functions of a law in a precision, registered with the compiler."""
     _register_helpers()
-    functions: list[Callable[..., Any]] = [law.initial_state, law.update, law.sound_speed]
-    optional = [function for function in (law.small_step, law.stored_energy) if function is not None]
-    modules = {law.parameters.__module__, law.state.__module__}
     for kind in (law.parameters, law.state):
         _name_by_module(kind)
     register: Callable[..., Any] = in_single if precision == "single" else _register_marked
-    # What is computed around a law in double precision may be in single.
-    files = _source_files([*functions, *optional]) | {Path(inspect.getfile(in_single))}
+    parts = [part for _, part in sorted(vars(law).items()) if callable(part)]
     return PointwiseLaw(
         name=law.name,
         precision=precision,
@@ -154,7 +148,7 @@ def pointwise_law(law: Law, precision: str = "double") -> PointwiseLaw:
         sound_speed=register(law.sound_speed),
         small_step=register(law.small_step) if law.small_step is not None else None,
         stored_energy=_register_marked(law.stored_energy) if law.stored_energy is not None else None,
-        mark=f"{law.name}_{precision}_{mark_of_sources(files, modules)}",
+        mark=f"{law.name}_{precision}_{mark_of_reached(parts)}",
     )
 
 

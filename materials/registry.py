@@ -1,8 +1,5 @@
 """Finding laws: one pluggy hook for built-ins, installed packages and single files alike."""
 
-import hashlib
-import importlib.util
-import sys
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import entry_points
@@ -13,6 +10,7 @@ import pluggy
 
 from grainlaw.materials.errors import InputError, nearest_name
 from grainlaw.materials.law import Law, check_law
+from grainlaw.materials.law_file import import_law_file
 
 PROJECT = "grainlaw"
 ENTRY_POINT_GROUP = "grainlaw.materials"
@@ -72,7 +70,7 @@ class Registry:
         """Register the laws of one Python file. Raises InputError if the file or any of its laws is refused."""
         known_refusals = len(self.refusals)
         try:
-            module = _import_file(path)
+            module = import_law_file(path)
         except Exception as error:
             raise InputError(f"plugin {path}: import raises {type(error).__name__}: {error}") from error
         self._register_plugin(module, path.stem, str(path))
@@ -121,30 +119,6 @@ class Registry:
 
     def _refuse(self, name: str, origin: str, reason: str) -> None:
         self.refusals.append(Refusal(name, origin, reason))
-
-
-def _import_file(path: Path) -> ModuleType:
-    """The module of a file; of a file with the same name and content that is loaded already, the same module.
-
-    It must be importable by name later: the compiler's disk cache refers to classes by module and name. Two files that
-    differ must not share a name, or what one leaves in the cache would refer to the classes of the other.
-    """
-    if not path.is_file():
-        raise FileNotFoundError(f"no file {path}")
-    name = f"grainlaw_plugin_{path.stem}_{hashlib.sha256(path.read_bytes()).hexdigest()[:12]}"
-    if name in sys.modules:
-        return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise ImportError("not a Python file")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    try:
-        spec.loader.exec_module(module)
-    except BaseException:
-        del sys.modules[name]
-        raise
-    return module
 
 
 @cache

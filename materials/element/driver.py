@@ -8,15 +8,13 @@ rho_{n+1} = rho_n exp(-tr D dt), that is d(ln v) = tr D dt.
 import math
 from collections.abc import Iterator
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
-from grainlaw.materials.compilation import PointwiseLaw, explained, mark_of_sources, named, pointwise_law
-from grainlaw.materials.element import search as search_module
+from grainlaw.materials.compilation import PointwiseLaw, explained, mark_of_reached, named, pointwise_law
 from grainlaw.materials.element.path import LoadingPath
 from grainlaw.materials.element.point import Point
 from grainlaw.materials.element.search import narrowed, search_from
@@ -30,7 +28,7 @@ MAXIMUM_ITERATIONS = 200
 # Share of the prescribed rate by which x first moves while its slope is unknown.
 FIRST_REACH = 0.1
 
-SEARCH_MARK = mark_of_sources([Path(search_module.__file__)])
+SEARCH_MARK = mark_of_reached([search_from, narrowed, Point])
 
 register_jitable(search_from)
 register_jitable(narrowed)

@@ -1,4 +1,7 @@
-"""The mark of the core's compiled code: it changes whenever a file that kernels are made from changes."""
+"""The mark of the core's compiled code: it changes whenever a file that kernels are made from changes.
+
+That is every file of the rooms below, the numbering of rows, and all of `materials`.
+"""
 
 from pathlib import Path
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from grainlaw.materials.compilation import named, pointwise_law, registered
+from grainlaw.materials.compilation import mark_of_reached, named, pointwise_law, registered
 from grainlaw.materials.registry import get_material
 from grainlaw.materials.tensor import SymmetricTensor
 from grainlaw.plugins.cam_clay import return_map as cam_clay
@@ -33,9 +33,10 @@ def compiled() -> tuple[Callable[..., Any], Callable[..., Any]]:
     step, state = registered(cam_clay.cam_clay_step), registered(cam_clay.yield_state)
     first, is_on_surface = registered(cam_clay.first_bracket), registered(cam_clay.is_on_yield_surface)
     trial, narrowed = registered(cam_clay.elastic_trial), registered(cam_clay.narrowed)
+    mark = f"{law.mark}_{mark_of_reached((step, state, first, is_on_surface, trial, narrowed))}"
 
     @njit(cache=True)
-    @named(law.mark)
+    @named(mark)
     def stepped(cases, constants, substeps, results):  # type: ignore[no-untyped-def]
         for k in range(cases.shape[1]):
             p, p_c = cases[0, k], cases[1, k]
@@ -57,7 +58,7 @@ def compiled() -> tuple[Callable[..., Any], Callable[..., Any]]:
             results[5, k], results[6, k], results[7, k] = s.xy, s.yz, s.xz
 
     @njit(cache=True)
-    @named(law.mark)
+    @named(mark)
     def evaluations(cases, constants, longest, counts):  # type: ignore[no-untyped-def]
         for k in range(cases.shape[1]):
             s = SymmetricTensor(cases[2, k], cases[3, k], cases[4, k], cases[5, k], cases[6, k], cases[7, k])
