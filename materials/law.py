@@ -60,7 +60,8 @@ class Law:
     parameter_sets  named parameter sets, the first of which element tests take by default
     contradiction   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
     carries_tension whether the material may be pulled; a law of loose grains leaves it at False
-    hook_version    version of this interface that the law was written for; a law that does not say was for version 1
+    hook_version    version of this interface that the law was written for, the present one unless it says otherwise; a
+                    law in a package of its own states it, so that a grainlaw that is too old or too new can say so
     viscosity       (stress, strain_rate, density, state, parameters) -> viscosity [Pa s] against plane waves, declared
                     by a law whose stress follows the rate of strain itself. Its `sound_speed` is that of waves at a
                     constant rate; its viscosity bounds an explicit step besides, to about rho h^2/(2 viscosity) on
@@ -92,7 +93,7 @@ class Law:
     parameter_sets: Mapping[str, ParameterSet] = field(default_factory=dict)
     contradiction: Callable[[Any], str] = _no_contradiction
     carries_tension: bool = False
-    hook_version: int = 1
+    hook_version: int = HOOK_VERSION
     viscosity: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any], float] | None = None
     stored_energy: Callable[[SymmetricTensor, float, Any, Any], float] | None = None
     at_bound: Callable[[SymmetricTensor, float, Any, Any], bool] | None = None

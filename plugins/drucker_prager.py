@@ -184,7 +184,6 @@ LAW = Law(
         ),
     },
     holds_in_single=True,
-    hook_version=2,
 )
 
 

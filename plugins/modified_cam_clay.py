@@ -210,7 +210,6 @@ LAW = Law(
         ),
     },
     resolutions=lambda parameters: MODIFIED_CAM_CLAY.get(parameters.overconsolidation_ratio, {}),
-    hook_version=2,
 )
 
 

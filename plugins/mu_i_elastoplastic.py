@@ -167,7 +167,6 @@ LAW = Law(
         "paper": ParameterSet(PAPER, "constants of `mu_i_lc`, Table 1 of its source", density_above_critical),
     },
     holds_in_single=True,
-    hook_version=2,
 )
 
 

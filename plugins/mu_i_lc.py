@@ -176,7 +176,6 @@ LAW = Law(
     },
     holds_in_single=True,
     resolutions=lambda parameters: MU_I_LC,
-    hook_version=2,
 )
 
 

@@ -151,7 +151,6 @@ LAW = Law(
     stored_energy=stored_energy,
     viscosity=viscosity,
     holds_in_single=True,
-    hook_version=2,
     contradiction=contradiction,
     parameter_sets={
         "paper": ParameterSet(

@@ -259,7 +259,6 @@ LAW = Law(
             PAPER._replace(overconsolidation_ratio=4.0), f"{SOURCE}; OCR = 4", density_on_compression_line
         ),
     },
-    hook_version=2,
 )
 
 

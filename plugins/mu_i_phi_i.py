@@ -287,7 +287,6 @@ LAW = Law(
             density_of_slow_flow,
         ),
     },
-    hook_version=2,
 )
 
 

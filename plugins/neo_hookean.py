@@ -137,7 +137,6 @@ LAW = Law(
             density=lambda pressure, parameters: 1000.0,
         )
     },
-    hook_version=2,
 )
 
 

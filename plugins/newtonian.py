@@ -98,7 +98,6 @@ LAW = Law(
     stored_energy=stored_energy,
     viscosity=viscosity,
     holds_in_single=True,
-    hook_version=2,
     parameter_sets={
         "glycerol": ParameterSet(
             Parameters(viscosity=1.41, bulk_modulus=1e5),

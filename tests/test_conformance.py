@@ -99,7 +99,9 @@ def test_header_without_equations_is_caught(tmp_path):
 
 
 def test_tension_may_be_declared(tmp_path):
-    text = SOUND_LAW.replace(*MISTAKES["tension"]).replace("hook_version=2", "hook_version=2, carries_tension=True")
+    text = SOUND_LAW.replace(*MISTAKES["tension"]).replace(
+        "    holds_in_single=True,", "    holds_in_single=True, carries_tension=True,"
+    )
     outcome = verdicts(law_of(text, tmp_path))["tension"]
     assert (outcome.verdict, outcome.reason.startswith("declared")) == ("pass", True)
 

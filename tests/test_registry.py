@@ -78,7 +78,7 @@ FAULTS = {
     ),
     "hook version in words": ({"extra": ', hook_version="two"'}, "hook_version = 'two' is not a whole number"),
     "viscosity before its hook version": (
-        {"extra": ", viscosity=sound_speed"},
+        {"extra": ", viscosity=sound_speed, hook_version=1"},
         "viscosity belongs to hook version 2; the law says hook_version=1",
     ),
     "set out of bounds": ({"value": "-1.0"}, "stiffness = -1.0 is outside (0, inf)"),
@@ -183,10 +183,11 @@ def test_file_that_is_no_plugin_is_refused(text, reason, tmp_path):
     assert reason in str(error.value)
 
 
-def test_law_that_states_no_hook_version_is_of_the_first(tmp_path):
+@pytest.mark.parametrize(("extra", "version"), [("", HOOK_VERSION), (", hook_version=1", 1)])
+def test_law_is_for_the_present_interface_unless_it_states_an_older_one(extra, version, tmp_path):
     found = Registry()
-    found.load_file(plugin_file(tmp_path))
-    assert found.get("spring").law.hook_version == 1
+    found.load_file(plugin_file(tmp_path, extra=extra))
+    assert found.get("spring").law.hook_version == version
 
 
 def test_missing_file_is_refused(tmp_path):

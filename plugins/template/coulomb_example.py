@@ -98,7 +98,6 @@ LAW = Law(
             density_at_rest,
         )
     },
-    hook_version=1,
 )
 
 
