@@ -1,19 +1,27 @@
 """Without a folder for compiled code everything is compiled anew, and one line says so; one to be read serves."""
 
-import subprocess
-import sys
+import errno
+import os
+import time
 
 import pytest
+from numba import njit
+from numba.core import config
+from numba.core.caching import FunctionCache
 from stretched_law import command, write_law
+
+from grainlaw.materials import kernel_cache
+from grainlaw.materials.law_file import import_law_file
 
 # A disk on which nothing can be written, to the compiler's eyes; it holds for the superuser too.
 READ_ONLY = """
-import errno, sys, tempfile
+import errno, tempfile
+from numba.core.caching import IndexDataCacheFile
 
 def refuse(*arguments, **options):
     raise OSError(errno.EROFS, "Read-only file system")
 
-tempfile.TemporaryFile = refuse
+tempfile.TemporaryFile = IndexDataCacheFile._open_for_write = refuse
 from grainlaw.cli.main import main
 main()
 """
@@ -35,7 +43,8 @@ LINE = "grainlaw: no folder to keep compiled code in can be written; it is compi
 
 @pytest.fixture
 def law(tmp_path):
-    return write_law(tmp_path / "law.py", "", "1.0")
+    # a law that no cache can know from an earlier test
+    return write_law(tmp_path / "law.py", f"# {tmp_path} {time.time()}", "1.0")
 
 
 def history(tmp_path, law, *start, **environment):
@@ -75,13 +84,48 @@ def test_a_full_disk_ends_no_run(law, tmp_path):
     assert [line.startswith(LINE) for line in said.splitlines()] == [True]
 
 
-def test_kernels_of_other_libraries_are_kept_as_the_compiler_does():
-    program = (
-        "import grainlaw.materials.compilation\nfrom numba import njit\n"
-        "from numba.core.caching import FunctionCache\nimport numba.np.arraymath as other\n"
-        "class Dispatcher: pass\n"
-        "from numba.core import dispatcher\n"
-        "print(type(dispatcher.FunctionCache(other.array_median)) is FunctionCache)\n"
-    )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert done.stdout == "True\n"
+def twice(x):
+    return 2 * x
+
+
+def test_a_kernel_without_any_folder_is_compiled_all_the_same(tmp_path, monkeypatch, capsys):
+    def refuse(*arguments, **options):
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(os, "makedirs", refuse)
+    monkeypatch.setattr(config, "CACHE_DIR", "")
+    monkeypatch.setenv("XDG_CACHE_HOME", "/dev/null/cache")
+    kernel_cache._say_that_nothing_is_kept.cache_clear()
+    path = tmp_path / "alone.py"
+    path.write_text("def twice(x):\n    return 2 * x\n")
+    function = import_law_file(path).twice
+    with pytest.raises(RuntimeError, match="no locator"):
+        FunctionCache(function)
+    kernel = njit(function)
+    kernel._cache = kernel_cache.KernelCache(function)
+    assert kernel(2) == 4
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(LINE)
+
+
+@pytest.mark.parametrize(("module", "kind"), [("grainlaw.made_up", kernel_cache.KernelCache), ("other", FunctionCache)])
+def test_kernels_of_other_libraries_are_kept_as_the_compiler_does(module, kind, monkeypatch):
+    kernel_cache.use_kernel_cache()
+    monkeypatch.setattr(twice, "__module__", module)
+    assert type(njit(cache=True)(twice)._cache) is kind
+
+
+def test_code_of_another_compiler_is_another_entry(tmp_path, monkeypatch):
+    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path))
+    keys = []
+    for version in ("1", "2"):
+        monkeypatch.setattr(kernel_cache, "SETTINGS", (version,))
+        kernel = njit(twice)
+        kernel._cache = kernel_cache.KernelCache(twice)
+        kernel(1)
+        keys.append(kernel.stats.cache_misses[next(iter(kernel.stats.cache_misses))])
+    assert keys == [1, 1]
+    kernel = njit(twice)
+    kernel._cache = kernel_cache.KernelCache(twice)
+    kernel(1)
+    assert list(kernel.stats.cache_hits.values()) == [1]
