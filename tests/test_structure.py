@@ -76,6 +76,19 @@ def test_the_mark_of_compiled_code_covers_what_kernels_are_made_from():
     assert found <= set(KERNEL_ROOMS)
 
 
+@pytest.mark.parametrize("room", KERNEL_ROOMS)
+def test_kernels_take_nothing_from_the_core_that_their_mark_does_not_cover(room):
+    covered = {f"grainlaw.mpm_core.{name}" for name in ("layout", *KERNEL_ROOMS)}
+    taken = {(module, name) for path in modules(f"mpm_core/{room}") for module, name in imports(path)}
+    beyond = {
+        (module, name)
+        for module, name in taken
+        if owner(module) == "mpm_core" and not any(module == one or module.startswith(f"{one}.") for one in covered)
+    }
+    # compiled code sees a body's arrays only
+    assert beyond <= {("grainlaw.mpm_core.body", "Body")}
+
+
 def test_public_names_exist_once():
     assert sorted(set(materials.__all__)) == sorted(materials.__all__)
     assert [name for name in materials.__all__ if not hasattr(materials, name)] == []
