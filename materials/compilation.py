@@ -22,7 +22,7 @@ from grainlaw.materials.errors import InputError
 from grainlaw.materials.kernel_cache import use_kernel_cache
 from grainlaw.materials.law import Law
 from grainlaw.materials.pointwise import MARKED
-from grainlaw.materials.reached import digest_of_reached
+from grainlaw.materials.reached import compiled_closures, digest_of_reached
 from grainlaw.materials.single_precision import in_single
 
 use_kernel_cache()
@@ -131,6 +131,16 @@ def _name_by_module(kind: type[Any]) -> None:
 
 
 @cache
+def _name_by_values(closure: Any) -> None:
+    """Name a closure that a law compiles itself by what it closes over, for the reason that `named` gives.
+
+    The check of the law has called it already, under its old name.
+    """
+    named(mark_of_reached([closure]))(closure.py_func)
+    closure.recompile()
+
+
+@cache
 def pointwise_law(law: Law, precision: str = "double") -> PointwiseLaw:
     """The functions of a law in a precision, registered with the compiler."""
     _register_helpers()
@@ -138,6 +148,8 @@ def pointwise_law(law: Law, precision: str = "double") -> PointwiseLaw:
         _name_by_module(kind)
     register: Callable[..., Any] = in_single if precision == "single" else _register_marked
     parts = [part for _, part in sorted(vars(law).items()) if callable(part)]
+    for closure in compiled_closures(parts):
+        _name_by_values(closure)
     return PointwiseLaw(
         name=law.name,
         precision=precision,

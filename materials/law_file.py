@@ -9,6 +9,7 @@ the `tables.py` beside it, as a module of that longer name; no other code sees a
 import ast
 import hashlib
 import importlib
+import re
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -100,7 +101,8 @@ def _module_name(file: _File, files: dict[Path, _File]) -> str:
                 pending.append(path)
     for path in sorted(reached - {file.path}):
         digest.update(path.name.encode() + b"\0" + files[path].content)
-    return f"{PREFIX}_{file.path.stem}_{digest.hexdigest()[:12]}"
+    stem = re.sub(r"\W", "_", file.path.stem)
+    return f"{PREFIX}_{stem}_{digest.hexdigest()[:12]}"
 
 
 class _Renamed(ast.NodeTransformer):

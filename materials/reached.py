@@ -38,6 +38,14 @@ def digest_of_reached(things: Iterable[object]) -> str:
     return walk.finished()
 
 
+def compiled_closures(things: Iterable[object]) -> list[Any]:
+    """The functions reached that are compiled by themselves (`njit`) and close over values."""
+    walk = _Walk()
+    for thing in things:
+        walk.visit(thing, frozenset())
+    return walk.compiled_closures
+
+
 class _Walk:
     """A walk over what is reached, each thing once, in an order that is the same in every process."""
 
@@ -47,6 +55,7 @@ class _Walk:
         # An id is that of one object only as long as the object lives.
         self._alive: list[object] = []
         self._modules: set[str] = set()
+        self.compiled_closures: list[Any] = []
 
     def finished(self) -> str:
         for name in sorted(_with_imports(self._modules)):
@@ -91,6 +100,8 @@ class _Walk:
         elif isinstance(value, functools.partial):
             self._visit_all((value.func, value.args, value.keywords))
         elif isinstance(inner := _wrapped(value), FunctionType):
+            if inner.__closure__ and hasattr(value, "recompile"):
+                self.compiled_closures.append(value)
             self.visit(inner, names)
         else:
             self._visit_other(value)
@@ -117,7 +128,8 @@ class _Walk:
         self._visit_named(own, frozenset(name for name in own if not name.startswith("_")))
 
     def _visit_function(self, function: FunctionType) -> None:
-        self._note(function.__module__, function.__qualname__)
+        # `compilation` changes the name of some functions, but not of their code.
+        self._note(function.__module__, function.__code__.co_qualname)
         if not _is_looked_into(function.__module__):
             return
         self._modules.add(function.__module__)

@@ -39,6 +39,23 @@ def grainlaw_materials():
     return [Law("{name}", "stretched", Parameters, State, initial_state, update, sound_speed, sets)]
 '''
 
+# One compiled step of the law of each of some files.
+COMPILED_STEP = """
+import sys
+from pathlib import Path
+from grainlaw.materials import SymmetricTensor, isotropic
+from grainlaw.materials.compilation import make_single_step, pointwise_law
+from grainlaw.materials.registry import Registry
+for path in map(Path, sys.argv[1:]):
+    found = Registry()
+    found.load_file(path)
+    law = found.get("stretched").law
+    values = law.parameter_sets["one"].parameters
+    step = make_single_step(pointwise_law(law))
+    stress, _ = step(isotropic(0.0), SymmetricTensor(1.0, *5 * (0.0,)), 1000.0, law.state(), values, 1e-6)
+    print(stress.xx)
+"""
+
 
 def write_law(path: Path, above: str, factor: str, name: str = "stretched") -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)

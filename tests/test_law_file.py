@@ -3,8 +3,7 @@
 import sys
 
 import pytest
-from stretched_law import printed, write_constant, write_law
-from test_stale_cache import STEPS
+from stretched_law import COMPILED_STEP, printed, write_constant, write_law
 
 from grainlaw.materials import InputError
 from grainlaw.materials.registry import Registry
@@ -86,6 +85,10 @@ def test_a_file_with_the_name_of_an_installed_module_is_refused_where_a_law_impo
         law_from(write_law(tmp_path / "law.py", f"import {name}", f"{name}.C"))
 
 
+def test_a_law_may_stand_in_a_file_of_any_name(tmp_path):
+    assert factor_of(law_from(write_law(tmp_path / "law-2.1 (new).py", "", "3.0"))) == 3.0
+
+
 def test_a_missing_neighbour_is_named(tmp_path):
     with pytest.raises(InputError, match="No module named 'constants'"):
         law_from(write_law(tmp_path / "law.py", *IMPORTS["of a name"]))
@@ -97,7 +100,7 @@ def test_states_from_a_neighbour_are_found_again_in_the_disk_cache(tmp_path):
     (tmp_path / "constants.py").write_text(text)
     law = write_law(tmp_path / "law.py", "from constants import ROW", "ROW.c")
     environment = {"NUMBA_CACHE_DIR": tmp_path / "cache", "NUMBA_DEBUG_CACHE": 1}
-    assert "data saved to" in printed("-c", STEPS, law, **environment)
-    again = printed("-c", STEPS, law, **environment)
+    assert "data saved to" in printed("-c", COMPILED_STEP, law, **environment)
+    again = printed("-c", COMPILED_STEP, law, **environment)
     assert "data saved to" not in again
     assert float(again.splitlines()[-1]) == pytest.approx(3.0)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import tomli_w
 from scenes_for_tests import BLOCK
-from stretched_law import command, printed, write_constant, write_law
+from stretched_law import COMPILED_STEP, command, printed, write_constant, write_law
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -41,23 +41,6 @@ WAYS = {
     "number that no source holds": ("import os\nOWN = float(os.environ['FACTOR'])", "OWN"),
 }
 
-# One compiled step of the law of each of some files.
-STEPS = """
-import sys
-from pathlib import Path
-from grainlaw.materials import SymmetricTensor, isotropic
-from grainlaw.materials.compilation import make_single_step, pointwise_law
-from grainlaw.materials.registry import Registry
-for path in map(Path, sys.argv[1:]):
-    found = Registry()
-    found.load_file(path)
-    law = found.get("stretched").law
-    values = law.parameter_sets["one"].parameters
-    step = make_single_step(pointwise_law(law))
-    stress, _ = step(isotropic(0.0), SymmetricTensor(1.0, *5 * (0.0,)), 1000.0, law.state(), values, 1e-6)
-    print(stress.xx)
-"""
-
 
 @pytest.fixture(scope="module")
 def stretched(tmp_path_factory):
@@ -73,7 +56,7 @@ def stretched(tmp_path_factory):
     for value in ("1.0", "2.00"):
         write_constant(folder / "elsewhere", value)
         environment = {"PYTHONPATH": folder / "elsewhere", "NUMBA_CACHE_DIR": folder / "cache", "FACTOR": value}
-        found.append(map(float, printed("-c", STEPS, *paths, **environment).split()))
+        found.append(map(float, printed("-c", COMPILED_STEP, *paths, **environment).split()))
     return dict(zip(WAYS, zip(*found, strict=True), strict=True))
 
 
@@ -185,7 +168,7 @@ def test_an_unedited_law_is_not_compiled_again_wherever_its_file_lies(tmp_path):
     logs = []
     for folder in ("here", "there"):
         law = write_law(tmp_path / folder / "law.py", *WAYS["function of a module"])
-        logs.append(printed("-c", STEPS, law, **environment))
+        logs.append(printed("-c", COMPILED_STEP, law, **environment))
     assert logs[0].count("data saved to") == 1
     assert "data saved to" not in logs[1]
     assert logs[1].count("data loaded from") == 1

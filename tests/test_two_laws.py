@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scenes_for_tests import CAM_CLAY, COLUMN, MU_I_LC
+from stretched_law import COMPILED_STEP, printed, write_law
 
 from grainlaw.materials import get_material
 from grainlaw.mpm_core import Scene, Simulation
@@ -110,3 +111,35 @@ def test_laws_from_two_files_of_the_same_name_leave_in_the_disk_cache_what_the_n
         for given in (paths, paths[1:])
     ]
     assert printed[0] == printed[1]
+
+
+# Long enough not to be inlined, so that the linker sees its name.
+CLOSURES = """
+import math
+from numba import njit
+
+
+def made(c):
+    @njit
+    def factor(x):
+        y = 0.0
+        for i in range(50):
+            y += math.sin(i * x) + math.exp(-i * x) + math.tan(i + x) + math.atan2(x, i + 1.0) + math.log(x + i + 1)
+            y -= math.sinh(x) + math.cos(x + i * i) + math.log(x + i + 2) + math.sin(x * i * i) + math.atan2(x, i + 2.0)
+        return c * x + 0.0 * y
+
+    return factor
+"""
+
+
+def test_closures_of_two_laws_from_one_factory_are_not_mixed_up(tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "closures.py").write_text(CLOSURES)
+    laws = [
+        write_law(tmp_path / f"law_{number}.py", f"from closures import made\n\nfactor = made({number})", "factor(1.0)")
+        for number in (1.0, 2.0)
+    ]
+    environment = {"PYTHONPATH": tmp_path / "elsewhere", "NUMBA_CACHE_DIR": tmp_path / "cache"}
+    found = [printed("-c", COMPILED_STEP, *given, **environment).split() for given in (laws[:1], laws[1:], laws)]
+    assert [float(value) for value in found[2]] == pytest.approx([1.0, 2.0])
+    assert found[0] + found[1] == found[2]
