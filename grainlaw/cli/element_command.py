@@ -40,13 +40,14 @@ def element(
 ) -> None:
     """Lead one point of a material along the path of an element test."""
     load_plugins(plugin)
-    chosen = _chosen_test(test, control)
     values = numbers(assigned(assignments))
-    _check_outputs(out, plot, material)
 
+    from grainlaw.face.element_tests import chosen_test
     from grainlaw.materials.element.run import run_element_test
     from grainlaw.materials.element.specimen import prepared
 
+    chosen = chosen_test(test, control)
+    _check_outputs(out, plot, material)
     prepared_tests = []
     for entry in material:
         name, _, set_name = entry.partition(":")
@@ -64,22 +65,6 @@ def element(
 
         draw(results, plot)
         typer.echo(f"wrote {plot}")
-
-
-def _chosen_test(name: str, control: Path | None) -> "ElementTest":
-    from grainlaw.materials.element.catalogue import MIXED, get_element_test
-
-    if name != MIXED:
-        found = get_element_test(name)
-        if control:
-            raise InputError(f"--control belongs to the element test {MIXED}, not to {name}")
-        return found
-    if control is None:
-        raise InputError(f"the element test {MIXED} needs --control FILE.toml")
-
-    from grainlaw.materials.element.mixed import mixed_test, read_control
-
-    return mixed_test(read_control(control))
 
 
 def _check_outputs(out: Path | None, plot: Path | None, materials: list[str]) -> None:

@@ -16,6 +16,7 @@ from grainlaw.cli.new_law_command import new_law
 from grainlaw.cli.plan_command import plan
 from grainlaw.cli.report_command import report
 from grainlaw.cli.run_command import run
+from grainlaw.cli.scenes_command import scenes
 from grainlaw.cli.validate_command import validate
 from grainlaw.materials import InputError, SimulationError
 
@@ -30,6 +31,7 @@ app = typer.Typer(
 app.command("materials")(materials)
 app.command("element")(element)
 app.command("calibrate")(calibrate)
+app.command("scenes")(scenes)
 app.command("run")(run)
 app.command("plan")(plan)
 app.command("compare")(compare)

@@ -1,4 +1,4 @@
-"""`grainlaw run`: a scene from its file to a run's folder."""
+"""`grainlaw run`: a scene from its file or by its name to a run's folder."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,7 +17,7 @@ def run(
     set_values: SetValues = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder of the run; default: runs/NAME of the scene file."),
+        typer.Option("--out", metavar="DIR", help="Folder of the run; default: runs/NAME of the scene."),
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the folder's checkpoint.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the run that the folder holds.")] = False,
@@ -32,13 +32,18 @@ def run(
     scene = load_scene(scene_file, set_values)
     folder = out or Path("runs") / scene_file.stem
 
-    from grainlaw.cli.progress import reporting
     from grainlaw.mpm_core.parallel.threads import usable_threads
     from grainlaw.mpm_core.stepping.run import run as run_scene
+    from grainlaw.progress import lines, shown_progress
 
-    with reporting(scene.time.end) as progress:
+    with shown_progress(scene.time.end) as progress:
         summary = run_scene(
-            scene, folder, threads=usable_threads(threads), resume=resume, overwrite=overwrite, progress=progress
+            scene,
+            folder,
+            threads=usable_threads(threads),
+            resume=resume,
+            overwrite=overwrite,
+            progress=progress or lines(scene.time.end),
         )
     _print_result(folder, summary)
 

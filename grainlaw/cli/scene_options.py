@@ -11,7 +11,14 @@ from grainlaw.cli.options import assigned
 if TYPE_CHECKING:
     from grainlaw.mpm_core.scene.model import Scene
 
-SceneFile = Annotated[Path, typer.Argument(metavar="SCENE.toml", help="Scene file.", show_default=False)]
+SceneFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="SCENE",
+        help="Scene file, or the name of a scene of `grainlaw scenes`; a file that exists is taken first.",
+        show_default=False,
+    ),
+]
 SetValues = Annotated[
     list[str] | None,
     typer.Option(
@@ -23,8 +30,9 @@ SetValues = Annotated[
 def load_scene(path: Path, set_values: list[str] | None) -> "Scene":
     """The validated scene with the set values on top. Raises InputError."""
     from grainlaw.mpm_core.scene.model import Scene
+    from grainlaw.mpm_core.scene.shipped import scene_file
 
-    return Scene.load(path, {key: _value(text) for key, text in assigned(set_values).items()})
+    return Scene.load(scene_file(path), {key: _value(text) for key, text in assigned(set_values).items()})
 
 
 def _value(text: str) -> Any:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -22,6 +23,9 @@ from grainlaw.materials.tensor import SymmetricTensor
 COLOURS = ("tab:green", "tab:blue", "tab:purple", "tab:orange", "tab:brown", "tab:pink", "tab:olive", "tab:cyan")
 COLOURS_OF_A_PICTURE = 128
 DASHES = ("solid", "dashed", "dotted", "dashdot")
+SIZE = (16.0, 4.2)
+"""Width and height of the figure [inch]."""
+STYLE: Any = {"font.size": 11, "mathtext.fontset": "cm", "axes.grid": False}
 
 Array = NDArray[np.float64]
 
@@ -44,9 +48,15 @@ class Curve:
 
 def draw(results: Sequence[ElementResult], path: Path) -> None:
     """Write the picture of one test on one or several materials: the paper's Figure 1 or its like for other tests."""
+    figure = Figure(figsize=SIZE, layout="constrained")
+    draw_on(figure, results)
+    write(figure, path)
+
+
+def draw_on(figure: Figure, results: Sequence[ElementResult]) -> None:
+    """Draw the four panels of one test on one or several materials onto an empty figure."""
     curves = _curves(results)
-    with mpl.rc_context({"font.size": 11, "mathtext.fontset": "cm", "axes.grid": False}):
-        figure = Figure(figsize=(16.0, 4.2), layout="constrained")
+    with mpl.rc_context(STYLE):
         panels = figure.subplots(1, 4)
         if isinstance(results[0].settings, ConstantPressureShearSettings):
             _draw_over_time(panels, curves, results[0].settings)
@@ -58,13 +68,13 @@ def draw(results: Sequence[ElementResult], path: Path) -> None:
             axes.set_title(f"({letter})", y=-0.32)
             axes.tick_params(direction="in", top=True, right=True, which="both")
         _draw_legend(figure, panels)
-        _write(figure, path)
 
 
-def _write(figure: Figure, path: Path) -> None:
-    """A PNG with a palette, a third of the size of one with all colours."""
+def write(figure: Figure, path: Path) -> None:
+    """Write a PNG with a palette, a third of the size of one with all colours."""
     buffer = BytesIO()
-    figure.savefig(buffer, format="png", dpi=130)
+    with mpl.rc_context(STYLE):
+        figure.savefig(buffer, format="png", dpi=130)
     with Image.open(buffer) as image:
         image.convert("RGB").quantize(COLOURS_OF_A_PICTURE).save(path, optimize=True)
 

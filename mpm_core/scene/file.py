@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Mapping
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +20,7 @@ def read_content(path: Path, overrides: Mapping[str, Any]) -> dict[str, Any]:
         raise InputError(f"{path}: {error.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: not valid TOML: {error}") from None
-    for key, value in overrides.items():
-        _set_dotted(content, key, value)
+    content = with_values(content, overrides)
     materials = content.get("material")
     for table in materials.values() if isinstance(materials, dict) else ():
         _take_in_parameter_file(table, path)
@@ -28,6 +28,17 @@ def read_content(path: Path, overrides: Mapping[str, Any]) -> dict[str, Any]:
     for body in bodies if isinstance(bodies, list) else ():
         _resolve_mesh_path(body, path.parent)
     return content
+
+
+def with_values(content: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """A copy of a scene's tables with values by dotted key set on top. Raises InputError for a key that leads nowhere.
+
+    Entries of lists go by number: `body.0.density`.
+    """
+    changed = deepcopy(dict(content))
+    for key, value in overrides.items():
+        _set_dotted(changed, key, value)
+    return changed
 
 
 def _take_in_parameter_file(table: Any, scene: Path) -> None:

@@ -1,0 +1,1 @@
+"""What `import grainlaw` gives: laws, element tests, scenes, runs and simulations for scripts and notebooks."""

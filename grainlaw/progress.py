@@ -1,0 +1,95 @@
+"""Progress of a run: a bar with the remaining time on a terminal and in a notebook, plain lines elsewhere."""
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+if TYPE_CHECKING:
+    from grainlaw.mpm_core.simulation import Simulation
+    from grainlaw.mpm_core.stepping.run import Progress as Callback
+
+REFRESH_INTERVAL = 0.2
+LINE_INTERVAL = 10.0
+
+
+@contextmanager
+def shown_progress(end: float) -> "Iterator[Callback | None]":
+    """A callback for `grainlaw.mpm_core.stepping.run.run` that shows the simulated time up to `end` [s].
+
+    None where there is neither a notebook nor a terminal to show it on.
+    """
+    console = Console(stderr=True)
+    if _in_notebook():
+        shown = _notebook_bar()
+        yield _every(REFRESH_INTERVAL, lambda s, dt: shown(s.time / end, _state(s, dt)))
+        shown(1.0, "")
+    elif console.is_terminal:
+        with _bar(console) as bar:
+            task = bar.add_task("", total=end, state="")
+            yield _every(REFRESH_INTERVAL, lambda s, dt: bar.update(task, completed=s.time, state=_state(s, dt)))
+            bar.update(task, completed=end)
+    else:
+        yield None
+
+
+def lines(end: float) -> "Callback":
+    """A callback that writes a line to stderr now and then."""
+    return _every(LINE_INTERVAL, lambda s, dt: print(f"{_state(s, dt)}, {s.time / end:.0%}", file=sys.stderr))
+
+
+def _bar(console: Console) -> Progress:
+    return Progress(
+        TextColumn("{task.percentage:3.0f} %"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[state]}"),
+        console=console,
+    )
+
+
+def _in_notebook() -> bool:
+    """Whether a kernel runs this process; a terminal's IPython has none."""
+    ipython = sys.modules.get("IPython")
+    return ipython is not None and getattr(ipython.get_ipython(), "kernel", None) is not None
+
+
+def _notebook_bar() -> Any:
+    """A function (share, text) that shows a bar below the running cell.
+
+    It is plain HTML: rich's own bar needs ipywidgets, here and where the notebook is looked at.
+    """
+    from IPython.display import HTML, display
+
+    started = time.perf_counter()
+
+    def bar(share: float, text: str) -> Any:
+        elapsed = time.perf_counter() - started
+        left = f", {elapsed * (1.0 - share) / share:.0f} s left" if 0.0 < share < 1.0 else ""
+        return HTML(f'<progress value="{share:.3f}"></progress> {share:.0%}, {elapsed:.0f} s{left} {text}')
+
+    handle = display(bar(0.0, ""), display_id=True)
+    return lambda share, text: handle.update(bar(share, text))
+
+
+def _state(simulation: "Simulation", dt: float) -> str:
+    return f"t = {simulation.time:.4g} s, dt = {dt:.3g} s, kinetic energy {simulation.ledger.kinetic:.3g} J/m"
+
+
+def _every(interval: float, report: "Callback") -> "Callback":
+    last = time.perf_counter()
+
+    def callback(simulation: "Simulation", dt: float) -> None:
+        nonlocal last
+        now = time.perf_counter()
+        if now - last >= interval:
+            last = now
+            report(simulation, dt)
+
+    return callback
