@@ -33,8 +33,7 @@ def plan(
         "points": f"{planned.points:,}",
         "cells of the domain": f"{planned.cells:,}",
         "active nodes": f"{planned.active_nodes:,}",
-        "memory": f"{planned.memory_bytes / 1e6:.0f} MB, all included; {planned.bytes_per_point:.0f} bytes per point "
-        "in arrays",
+        "memory": f"{_megabytes(planned.memory_bytes)}; {planned.bytes_per_point:.0f} bytes per point in arrays",
         "basis, transfer": f"{scene.transfer.basis}, {scene.transfer.scheme}, "
         f"time constant {scene.transfer.time_constant:g} s",
         "time step": f"{planned.step:.3g} s at the start (stable: {planned.critical_time_step:.3g} s)",
@@ -49,3 +48,7 @@ def plan(
     for name, value in rows.items():
         table.add_row(name, value)
     Console(width=110).print(table)
+
+
+def _megabytes(memory: int) -> str:
+    return f"{memory / 1e6:.0f} MB, all included" if memory else "not told by this system"

@@ -1,7 +1,6 @@
 """What a scene will use and cost, before it is run."""
 
 import math
-import resource
 import statistics
 import time
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ from grainlaw.mpm_core.output.checkpoint import Clock
 from grainlaw.mpm_core.output.recorder import FRAMES_BY_DEFAULT, HISTORY_ROWS_BY_DEFAULT, Recorder
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.stepping.peak_memory import peak_memory
 from grainlaw.mpm_core.stepping.rehearsal import FIRST_STEPS, expected_speed, rehearsals
 from grainlaw.mpm_core.stepping.run import built_simulation
 
@@ -23,7 +23,8 @@ class Plan:
     """What a run of a scene takes.
 
     bytes_per_point    of the arrays that hold the points
-    memory_bytes       greatest memory of this process while it built the scene and made the first steps, all included
+    memory_bytes       greatest memory of this process while it built the scene and made the first steps, all included; 0 where the
+                       system does not tell
     step, critical_time_step  at the start [s]
     steps              with the signal speeds of rehearsals on coarse grids
     wall_time          of all steps and all output [s], without compilation
@@ -60,7 +61,7 @@ def plan(scene: Scene, threads: int = 1) -> Plan:
     stops = math.ceil(scene.time.end / interval - 1e-9)
     output_time = _output_time(simulation, stops + 1)
     seconds = _seconds_per_step(simulation, min(step, stable))
-    memory_bytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    memory_bytes = peak_memory()
     played = rehearsals(scene, points, threads)
     seconds += played[-1].growth * points
     steps = _steps(scene, expected_speed(played, scene.grid.cell_size), stops)

@@ -1,6 +1,5 @@
 """The time loop: from a scene to a run's folder."""
 
-import resource
 import time
 from collections.abc import Callable
 from importlib.metadata import version
@@ -13,6 +12,7 @@ from grainlaw.mpm_core.output.recorder import Recorder, prepare_folder, rewind
 from grainlaw.mpm_core.output.summary import FinalState, RunSummary, write_summary
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.stepping.peak_memory import peak_memory
 
 Progress = Callable[[Simulation, float], None]
 
@@ -111,7 +111,7 @@ def _summary(simulation: Simulation, recorder: Recorder, wall_time: float, compi
         wall_time=wall_time,
         compile_time=compile_time,
         point_steps_per_second=points * simulation.steps / max(wall_time - compile_time, 1e-9),
-        peak_memory_bytes=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+        peak_memory_bytes=peak_memory(),
         final=FinalState(
             runout=shape.runout,
             height=shape.height,
