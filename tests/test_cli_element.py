@@ -65,8 +65,8 @@ def test_help_names_every_test():
         (["isotropic", "--material", "mu_i_lc", "--out", "absent/history.csv"], "there is no folder absent"),
         (["isotropic", "--material", "mu_i_lc", "--plot", "history.pdf"], "does not end in .png"),
         (["isotropic", "--material", "mu_i_lc", "--material", "linear_elastic", "--out", "x.csv"], "one material"),
-        (["mixed", "--material", "mu_i_lc"], "needs --control FILE.toml"),
-        (["isotropic", "--material", "mu_i_lc", "--control", "c.toml"], "--control belongs to"),
+        (["mixed", "--material", "mu_i_lc"], r"needs a control file (--control FILE.toml)"),
+        (["isotropic", "--material", "mu_i_lc", "--control", "c.toml"], "(--control) belongs to"),
     ],
 )
 def test_wrong_request_is_one_line_and_exit_2(arguments, message):

@@ -1,80 +1,38 @@
 """A stranger's law: docs/adding-a-law.md followed to the letter, in a virtual environment of its own.
 
-The environment holds grainlaw as a real installation, built from a copy of the sources. The libraries below it (numpy,
-numba, ...) and setuptools come from the environment that runs the tests, through a path file, and pip builds with that
-setuptools instead of downloading one: the test needs no network.
+The environment holds grainlaw as a real installation (`installation.py`).
 """
 
 import json
-import os
-import shutil
 import subprocess
 import sys
-import sysconfig
-import zipfile
-from pathlib import Path
 
 import pytest
-from documentation import DOCS, ROOT, run_page
-
-SOURCES = ("materials", "plugins", "mpm_core", "validation", "scenes", "grainlaw", "pyproject.toml", "README.md")
-# pip reads 0 as "no isolation": the option that it stands for is a negative one.
-PIP_SETTINGS = {"PIP_NO_BUILD_ISOLATION": "0", "PIP_NO_DEPS": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
-
-
-@pytest.fixture(scope="module")
-def installation(tmp_path_factory):
-    """The folder of commands of a new environment in which grainlaw is installed, and the wheel that it came from."""
-    folder = tmp_path_factory.mktemp("installation")
-    sources = folder / "sources"
-    for name in SOURCES:
-        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
-        (sources / name).parent.mkdir(exist_ok=True)
-        copy(ROOT / name, sources / name)
-    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder / "venv")], check=True)
-    binaries = folder / "venv" / "bin"
-    paths = {"base": str(folder / "venv"), "platbase": str(folder / "venv")}
-    own = Path(sysconfig.get_path("purelib", "venv", paths))
-    outer = dict.fromkeys([sysconfig.get_path("purelib"), sysconfig.get_path("platlib")])
-    (own / "libraries_of_the_tests.pth").write_text("\n".join(outer) + "\n")
-    pip = binaries / "pip"
-    pip.write_text(f'#!/bin/sh\nexec "{binaries}/python" -m pip "$@"\n')
-    pip.chmod(0o755)
-    environment = {**os.environ, **PIP_SETTINGS}
-    subprocess.run(
-        [pip, "wheel", "--quiet", "--wheel-dir", folder / "wheels", sources], check=True, env=environment, cwd=folder
-    )
-    (wheel,) = (folder / "wheels").iterdir()
-    subprocess.run([pip, "install", "--quiet", wheel], check=True, env=environment, cwd=folder)
-    return binaries, wheel
+from documentation import DOCS, run_page
+from installation import PIP_SETTINGS
 
 
 @pytest.fixture(scope="module")
 def followed(installation, tmp_path_factory):
     """The folder of the package that the page makes, after all its commands ran in the new environment."""
     folder = tmp_path_factory.mktemp("work")
-    run_page(DOCS / "adding-a-law.md", folder / "clone", installation[0], PIP_SETTINGS)
+    run_page(DOCS / "adding-a-law.md", folder / "clone", installation.binaries, PIP_SETTINGS)
     return folder / "cemented-sand"
-
-
-def test_wheel_holds_the_laws_and_the_template(installation):
-    names = zipfile.ZipFile(installation[1]).namelist()
-    assert "plugins/mu_i_lc.py" in names
-    template = {path.name for path in (ROOT / "plugins" / "template").iterdir() if path.is_file()}
-    assert {name.removeprefix("plugins/template/") for name in names if "/template/" in name} == template
-    assert "materials/calibration/data/plane_shear_liggghts.csv" in names
-    assert {name.partition("/")[0] for name in names if ".dist-info" not in name} == set(SOURCES[:5])
 
 
 def test_law_is_listed_as_coming_from_its_own_package(installation, followed):
     listed = subprocess.run(
-        [installation[0] / "grainlaw", "materials", "--json"], cwd=followed, capture_output=True, text=True, check=True
+        [installation.binaries / "grainlaw", "materials", "--json"],
+        cwd=followed,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     assert listed.stderr == ""
     laws = {law["name"]: law for law in json.loads(listed.stdout)}
     assert laws["cemented_sand"]["origin"] == "cemented-sand 0.1.0"
     assert laws["cemented_sand"]["file"] == str(followed / "cemented_sand.py")
-    assert laws["mu_i_lc"]["file"].startswith(str(installation[0].parent))
+    assert laws["mu_i_lc"]["file"].startswith(str(installation.binaries.parent))
 
 
 def test_element_tests_wrote_history_and_figure(followed):
@@ -104,7 +62,11 @@ WRITTEN = """\
 def test_new_law_fails_its_test_until_it_is_written_and_then_passes_every_check(installation, tmp_path):
     def command(*arguments, folder=tmp_path / "green-sand"):
         return subprocess.run(
-            [installation[0] / arguments[0], *arguments[1:]], cwd=folder, capture_output=True, text=True, check=False
+            [installation.binaries / arguments[0], *arguments[1:]],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=False,
         )
 
     def tested():

@@ -15,7 +15,11 @@ def calibrate(
     law: Annotated[str, typer.Argument(metavar="LAW", help="Name of the law.")],
     data: Annotated[
         list[Path],
-        typer.Argument(metavar="DATA.csv...", help="Element-test data, all fitted together.", show_default=False),
+        typer.Argument(
+            metavar="DATA.csv...",
+            help="Element-test data, all fitted together; `plane_shear_liggghts` comes with grainlaw.",
+            show_default=False,
+        ),
     ],
     fit: Annotated[
         list[str] | None,
@@ -46,8 +50,10 @@ def calibrate(
 
     from grainlaw.materials.calibration.findings import Findings
     from grainlaw.materials.calibration.fit import calibrate as fitted_to
+    from grainlaw.materials.calibration.shipped import data_file
 
-    findings = Findings(fitted_to(law, data, fit or (), fixed, parameters))
+    files = [data_file(path) for path in data]
+    findings = Findings(fitted_to(law, files, fit or (), fixed, parameters))
     _print_findings(findings)
     if out is not None:
         from grainlaw.materials.calibration.files import write_files
