@@ -97,7 +97,7 @@ def _make(folder: Path, planned: Installation) -> None:
     venv = planned.binaries.parent
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", venv], check=True)
     own = Path(sysconfig.get_path("purelib", "venv", {"base": str(venv), "platbase": str(venv)}))
-    outer = dict.fromkeys([sysconfig.get_path("purelib"), sysconfig.get_path("platlib")])
+    outer = [path for path in sys.path if Path(path).name == own.name]
     (own / "libraries_of_the_tests.pth").write_text("\n".join(outer) + "\n")
     pip = planned.binaries / "pip"
     pip.write_text(f'#!/bin/sh\nexec "{planned.python}" -m pip "$@"\n')

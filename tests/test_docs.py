@@ -27,7 +27,8 @@ PAGES = sorted(DOCS.glob("*.md"))
 RUNNABLE_PAGES = [
     page
     for page in (ROOT / "README.md", *PAGES)
-    if page.name != "adding-a-law.md" and "\n```sh runnable\n" in page.read_text(encoding="utf-8")
+    if page.name != "adding-a-law.md"
+    and re.search(r"^```(sh|python) runnable$", page.read_text(encoding="utf-8"), re.M)
 ]
 COMMANDS: dict[str, Any] = commands(typer.main.get_command(app))
 
@@ -124,6 +125,7 @@ def test_pages_show_commands_to_run():
         "element-tests",
         "output",
         "physics-notes",
+        "python",
         "quick-start",
         "scenes",
     }

@@ -5,6 +5,7 @@ import hashlib
 import json
 import re
 import subprocess
+import sys
 import tarfile
 import tomllib
 import zipfile
@@ -73,9 +74,10 @@ def test_versions_agree():
 
 
 def test_only_grainlaw_is_importable(installation, tmp_path):
+    names = [*FOLDERS, "benchmarks", "tests", "grainlaw"]
     program = f"""
 import importlib.util, json
-print(json.dumps([name for name in {[*FOLDERS, "benchmarks", "tests", "grainlaw"]!r} if importlib.util.find_spec(name)]))
+print(json.dumps([name for name in {names!r} if importlib.util.find_spec(name)]))
 """
     assert json.loads(installation.run("python", "-c", program, folder=tmp_path).stdout) == ["grainlaw"]
 
@@ -83,7 +85,7 @@ print(json.dumps([name for name in {[*FOLDERS, "benchmarks", "tests", "grainlaw"
 @pytest.mark.parametrize("folder", ["materials", "plugins", "mpm_core", "validation"])
 def test_a_folder_under_its_old_name_says_what_to_import(folder, tmp_path):
     done = subprocess.run(
-        ["python3", "-S", "-c", f"import {folder}"], cwd=ROOT, capture_output=True, text=True, check=False
+        [sys.executable, "-S", "-c", f"import {folder}"], cwd=ROOT, capture_output=True, text=True, check=False
     )
     assert done.stderr.splitlines()[-1] == f"ImportError: import grainlaw.{folder}, not {folder}"
 

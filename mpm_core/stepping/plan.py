@@ -23,8 +23,8 @@ class Plan:
     """What a run of a scene takes.
 
     bytes_per_point    of the arrays that hold the points
-    memory_bytes       greatest memory of this process while it built the scene and made the first steps, all included; 0 where the
-                       system does not tell
+    memory_bytes       greatest memory of this process while it built the scene and made the first steps, all included;
+                       0 where the system does not tell
     step, critical_time_step  at the start [s]
     steps              with the signal speeds of rehearsals on coarse grids
     wall_time          of all steps and all output [s], without compilation
