@@ -23,12 +23,12 @@ from grainlaw.reference.pages import PARTS, regenerated_pages
 from grainlaw.reference.scene_tables import description, models_in, scene_tables
 
 PAGES = sorted(DOCS.glob("*.md"))
+RUNNABLE = re.compile(r"^```(sh|python) runnable$", re.M)
 # test_template_package.py follows adding-a-law.md in an environment of its own.
 RUNNABLE_PAGES = [
     page
     for page in (ROOT / "README.md", *PAGES)
-    if page.name != "adding-a-law.md"
-    and re.search(r"^```(sh|python) runnable$", page.read_text(encoding="utf-8"), re.M)
+    if page.name != "adding-a-law.md" and RUNNABLE.search(page.read_text(encoding="utf-8"))
 ]
 COMMANDS: dict[str, Any] = commands(typer.main.get_command(app))
 
