@@ -1,6 +1,7 @@
 """Element tests for scripts and notebooks: one point of a law, its history as arrays, table and picture."""
 
 from collections.abc import Mapping
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -102,7 +103,7 @@ def run_element_test(
 ) -> ElementTestResult:
     """Run an element test on the law of that name; see `ConstitutiveLaw.element_test`."""
     for name, value in values.items():
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
+        if isinstance(value, bool) or not isinstance(value, Real):
             raise InputError(f"{name} = {value!r}: a number is needed")
     chosen = chosen_test(test, None if control is None else Path(control))
     specimen, settings = prepared(law, parameter_set, values, chosen)
