@@ -11,7 +11,7 @@ from grainlaw.materials.elastic_energy import (
 )
 from grainlaw.materials.errors import InputError, SimulationError
 from grainlaw.materials.law import HOOK_VERSION, Law, ParameterSet
-from grainlaw.materials.opening import Contact, after_closing
+from grainlaw.materials.opening import StrainInContact, strain_in_contact
 from grainlaw.materials.pointwise import pointwise
 from grainlaw.materials.registry import get_material, hookimpl, registry
 from grainlaw.materials.resolution import Resolution
@@ -43,7 +43,6 @@ from grainlaw.materials.tensor import (
 
 __all__ = [
     "HOOK_VERSION",
-    "Contact",
     "InputError",
     "Law",
     "Parameter",
@@ -51,9 +50,9 @@ __all__ = [
     "Resolution",
     "SimulationError",
     "StateVariable",
+    "StrainInContact",
     "SymmetricTensor",
     "added",
-    "after_closing",
     "assembled_stress",
     "checked_parameters",
     "congruent",
@@ -78,6 +77,7 @@ __all__ = [
     "scaled",
     "shear_modulus",
     "shear_strain_rate",
+    "strain_in_contact",
     "stress_ratio",
     "trace",
     "volumetric_strain_rate",

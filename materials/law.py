@@ -36,7 +36,7 @@ class ParameterSet:
     density: Callable[[float, Any], float]
 
 
-def _no_contradiction(parameters: Any) -> str:
+def _no_inconsistency(parameters: Any) -> str:
     return ""
 
 
@@ -58,7 +58,7 @@ class Law:
                     strain rate D [1/s], ending at `density`; the caller has already rotated the stress
     sound_speed     (stress, density, state, parameters) -> fastest wave speed [m/s]
     parameter_sets  named parameter sets, the first of which element tests take by default
-    contradiction   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
+    inconsistency   (parameters) -> what is wrong between parameters that are each within bounds; empty if nothing is
     carries_tension whether the material may be pulled; a law of loose grains leaves it at False
     hook_version    version of this interface that the law was written for, the present one unless it says otherwise; a
                     law in a package of its own states it, so that a grainlaw that is too old or too new can say so
@@ -91,7 +91,7 @@ class Law:
     update: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any]]
     sound_speed: Callable[[SymmetricTensor, float, Any, Any], float]
     parameter_sets: Mapping[str, ParameterSet] = field(default_factory=dict)
-    contradiction: Callable[[Any], str] = _no_contradiction
+    inconsistency: Callable[[Any], str] = _no_inconsistency
     carries_tension: bool = False
     hook_version: int = HOOK_VERSION
     viscosity: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any], float] | None = None
@@ -106,7 +106,7 @@ class Law:
     def checked(self, values: dict[str, Any], where: str) -> Any:
         """Parameters of this law from values by name; `where` names their place in messages. Raises InputError."""
         parameters = checked_parameters(where, self.parameters, values)
-        reason = self.contradiction(parameters)
+        reason = self.inconsistency(parameters)
         if reason:
             raise InputError(f"{where}: {reason}")
         return parameters
@@ -172,7 +172,7 @@ def _check_one_step(law: Law, name: str, parameter_set: ParameterSet) -> None:
         value = getattr(parameters, parameter)
         if not declaration.interval.contains(value):
             raise DeclarationError(f"parameter set '{name}': {parameter} = {value} is outside {declaration.bounds}")
-    if reason := law.contradiction(parameters):
+    if reason := law.inconsistency(parameters):
         raise DeclarationError(f"parameter set '{name}': {reason}")
     try:
         density = parameter_set.density(1000.0, parameters)

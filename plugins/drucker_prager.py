@@ -16,7 +16,8 @@ Return. Along (2) the trial state (p*, tau*) moves by K B gamma^p and -G gamma^p
     gamma^p = (tau* - A p* - k) / (G + A K B)                                                (6)
 
 it is on the cone. If that asks for tau < 0 the state is the apex, p = -k/A, s = 0; of the volume that is left, what (2)
-does not account for is an opening. It is kept as `gap`, which has to close before the pressure departs from the apex.
+does not account for is an opening. It is kept as `opening_strain`, which has to close before the pressure departs
+from the apex.
 
 Source: Drucker & Prager (1952), Q. Appl. Math. 10; the bars: Bui, Fukagawa, Sako & Ohno (2008), Int. J. Numer. Anal.
 Meth. Geomech. 32.
@@ -35,7 +36,6 @@ from grainlaw.materials import (
     StateVariable,
     SymmetricTensor,
     added,
-    after_closing,
     assembled_stress,
     deviator,
     energy_of_logarithmic_compression,
@@ -48,6 +48,7 @@ from grainlaw.materials import (
     pressure,
     scaled,
     shear_modulus,
+    strain_in_contact,
     volumetric_strain_rate,
 )
 
@@ -65,7 +66,9 @@ class Parameters(NamedTuple):
 class State(NamedTuple):
     """What a point remembers."""
 
-    gap: Annotated[float, StateVariable("1", "volumetric strain of opening beyond the apex; 0 while in contact")]
+    opening_strain: Annotated[
+        float, StateVariable("1", "volumetric strain of opening beyond the apex; 0 while in contact")
+    ]
 
 
 class Strength(NamedTuple):
@@ -99,15 +102,17 @@ def update(
     parameters: Parameters,
     dt: float,
 ) -> tuple[SymmetricTensor, State]:
-    """Close the gap if there is one, then the elastic trial step and the return to the cone or its apex."""
-    contact = after_closing(volumetric_strain_rate(strain_rate) * dt, scaled(deviator(strain_rate), dt), state.gap)
-    if contact.gap > 0.0:
-        return stress, State(contact.gap)
+    """Close an opened point, then the elastic trial step and the return to the cone or its apex."""
+    strain = strain_in_contact(
+        volumetric_strain_rate(strain_rate) * dt, scaled(deviator(strain_rate), dt), state.opening_strain
+    )
+    if strain.opening_strain > 0.0:
+        return stress, State(strain.opening_strain)
 
     bulk_modulus = parameters.bulk_modulus
     modulus = shear_modulus(bulk_modulus, parameters.poisson_ratio)
-    trial_pressure = pressure(stress) + bulk_modulus * contact.compression
-    trial = added(deviator(stress), scaled(contact.shear, 2.0 * modulus))
+    trial_pressure = pressure(stress) + bulk_modulus * strain.compression
+    trial = added(deviator(stress), scaled(strain.shear, 2.0 * modulus))
     trial_tau = half_norm(trial)
 
     cone = strength_of(parameters)
@@ -130,7 +135,7 @@ def sound_speed(stress: SymmetricTensor, density: float, state: State, parameter
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
     cone = strength_of(parameters)
     return flowing_wave_speed(
-        parameters.bulk_modulus, modulus, cone.friction, cone.dilatancy, density * math.exp(state.gap)
+        parameters.bulk_modulus, modulus, cone.friction, cone.dilatancy, density * math.exp(state.opening_strain)
     )
 
 
@@ -141,7 +146,7 @@ def stored_energy(stress: SymmetricTensor, density: float, state: State, paramet
     return isotropic_part + energy_of_shear(stress, density, modulus)
 
 
-def contradiction(parameters: Parameters) -> str:
+def inconsistency(parameters: Parameters) -> str:
     """Flow that dilates more than friction allows would give out energy."""
     if parameters.dilatancy_angle <= parameters.friction_angle:
         return ""
@@ -164,7 +169,7 @@ LAW = Law(
     update=update,
     sound_speed=sound_speed,
     stored_energy=stored_energy,
-    contradiction=contradiction,
+    inconsistency=inconsistency,
     parameter_sets={
         "aluminium_bars": ParameterSet(
             ALUMINIUM_BARS,

@@ -1,4 +1,4 @@
-"""Modified Cam Clay (MCC), with exponential elasticity integrated exactly and a gap for opened points.
+"""Modified Cam Clay (MCC), with exponential elasticity integrated exactly and an opening strain.
 
     F = q^2/M^2 - p (p_c - p) <= 0                                                           (paper Eq. 7)
     d(eps^p) = dLambda [3/M^2 s - (2p - p_c)/3 1], so d(eps_v^p) = dLambda (2p - p_c)         (paper Eq. 8)
@@ -11,7 +11,7 @@ Over a step, p and p_c follow their exponential laws exactly; the return to F = 
 (`plugins/cam_clay/return_map.py`).
 
 Grains carry no tension. Where the pressure would fall below `stress_free_pressure` the point opens: its stress is zero
-and `gap` keeps the volumetric strain since, so that pressure returns only when the gap has closed.
+and `opening_strain` keeps the volumetric strain since, so that pressure returns only when the point has closed.
 
 Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", Eqs. 7-10, Table 1; MCC
 after Roscoe & Burland (1968). kappa and lambda are slopes in ln v - ln p.
@@ -28,7 +28,6 @@ from grainlaw.materials import (
     ParameterSet,
     StateVariable,
     SymmetricTensor,
-    after_closing,
     assembled_stress,
     deviator,
     deviatoric_stress,
@@ -39,6 +38,7 @@ from grainlaw.materials import (
     pressure,
     scaled,
     shear_modulus,
+    strain_in_contact,
     volumetric_strain_rate,
 )
 from grainlaw.plugins.cam_clay.resolutions import MODIFIED_CAM_CLAY
@@ -69,7 +69,9 @@ class State(NamedTuple):
     """What a point remembers."""
 
     preconsolidation_pressure: Annotated[float, StateVariable("Pa", "size p_c of the yield surface")]
-    gap: Annotated[float, StateVariable("1", "volumetric strain beyond the stress-free state; 0 while in contact")]
+    opening_strain: Annotated[
+        float, StateVariable("1", "volumetric strain beyond the stress-free state; 0 while in contact")
+    ]
 
 
 def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
@@ -89,16 +91,18 @@ def update(
     parameters: Parameters,
     dt: float,
 ) -> tuple[SymmetricTensor, State]:
-    """Close the gap if there is one, then the elastic trial step, the return to F = 0, and opening."""
-    contact = after_closing(volumetric_strain_rate(strain_rate) * dt, scaled(deviator(strain_rate), dt), state.gap)
-    if contact.gap > 0.0:
-        return isotropic(0.0), State(state.preconsolidation_pressure, contact.gap)
+    """Close an opened point, then the elastic trial step, the return to F = 0, and opening."""
+    strain = strain_in_contact(
+        volumetric_strain_rate(strain_rate) * dt, scaled(deviator(strain_rate), dt), state.opening_strain
+    )
+    if strain.opening_strain > 0.0:
+        return isotropic(0.0), State(state.preconsolidation_pressure, strain.opening_strain)
 
     new = cam_clay_step(
         max(pressure(stress), parameters.stress_free_pressure),
         deviator(stress),
-        contact.compression,
-        contact.shear,
+        strain.compression,
+        strain.shear,
         state.preconsolidation_pressure,
         constants_of(parameters),
         0.0,
@@ -106,8 +110,8 @@ def update(
     smallest = parameters.stress_free_pressure
     preconsolidation_pressure = max(new.preconsolidation_pressure, 2.0 * smallest)
     if new.mean_pressure < smallest:
-        gap = parameters.swelling_index * math.log(smallest / new.mean_pressure)
-        return isotropic(0.0), State(preconsolidation_pressure, gap)
+        opening_strain = parameters.swelling_index * math.log(smallest / new.mean_pressure)
+        return isotropic(0.0), State(preconsolidation_pressure, opening_strain)
     return assembled_stress(new.mean_pressure, new.deviator), State(preconsolidation_pressure, 0.0)
 
 
@@ -131,7 +135,7 @@ def small_step(
         constants_of(parameters),
     )
     in_contact = min(start_pressure, new.mean_pressure, 0.5 * new.preconsolidation_pressure) >= smallest
-    succeeded = new.succeeded and in_contact and state.gap == 0.0
+    succeeded = new.succeeded and in_contact and state.opening_strain == 0.0
     return assembled_stress(new.mean_pressure, new.deviator), State(new.preconsolidation_pressure, 0.0), succeeded
 
 
@@ -165,7 +169,7 @@ def at_bound(stress: SymmetricTensor, density: float, state: State, parameters: 
     return state.preconsolidation_pressure <= 2.0 * parameters.stress_free_pressure
 
 
-def contradiction(parameters: Parameters) -> str:
+def inconsistency(parameters: Parameters) -> str:
     """Compression has to be softer than swelling."""
     if parameters.compression_index > parameters.swelling_index:
         return ""
@@ -193,7 +197,7 @@ PAPER = Parameters(
 
 LAW = Law(
     name="modified_cam_clay",
-    summary="Modified Cam Clay critical-state plasticity with exact exponential elasticity and gap tracking",
+    summary="Modified Cam Clay critical-state plasticity with exact exponential elasticity and opening",
     parameters=Parameters,
     state=State,
     initial_state=initial_state,
@@ -201,7 +205,7 @@ LAW = Law(
     sound_speed=sound_speed,
     stored_energy=stored_energy,
     at_bound=at_bound,
-    contradiction=contradiction,
+    inconsistency=inconsistency,
     small_step=small_step,
     parameter_sets={
         "paper": ParameterSet(PAPER, "Table 1, OCR = 1", density_on_compression_line),

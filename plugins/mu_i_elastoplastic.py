@@ -9,7 +9,7 @@ Flow at constant volume leaves the trace of (1) to integrate exactly, p = K ln(r
 again, at the density rho_c where the pressure vanishes, so that grains may fly apart and come together without gain of
 volume. rho_c follows for each point from its initial pressure and density, so that the initial state is in equilibrium;
 the sets below start at the published critical density. Over a step, the plastic rate is the root of a quadratic
-(`share_after_return`, shared with `mu_i_lc`), as in the source.
+(`radial_return_factor`, shared with `mu_i_lc`), as in the source.
 
 `mu_i_lc` takes the elastic predictor from the same source. The two differ in what they are made to represent: there
 K_LC is the compression law of a fluid-like model, linear in density (the paper's Eq. 6); here K and nu are the
@@ -45,7 +45,7 @@ from grainlaw.materials import (
     shear_modulus,
     stress_ratio,
 )
-from grainlaw.plugins.mu_i.friction import own_inertial_number_constant, share_after_return
+from grainlaw.plugins.mu_i.friction import own_inertial_number_constant, radial_return_factor
 
 
 class Parameters(NamedTuple):
@@ -92,7 +92,7 @@ def update(
     trial = added(deviator(stress), scaled(deviator(strain_rate), stiffness))
     trial_shear_stress = half_norm(trial)
     reference_rate = math.sqrt(new_pressure / parameters.grain_density) / parameters.grain_diameter
-    share = share_after_return(
+    factor = radial_return_factor(
         trial_shear_stress,
         new_pressure,
         stiffness,
@@ -100,7 +100,7 @@ def update(
         parameters.dynamic_friction,
         parameters.inertial_number_constant * reference_rate,
     )
-    return assembled_stress(new_pressure, scaled(trial, share)), state
+    return assembled_stress(new_pressure, scaled(trial, factor)), state
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
@@ -117,7 +117,7 @@ def stored_energy(stress: SymmetricTensor, density: float, state: State, paramet
     return isotropic_part + energy_of_shear(stress, density, modulus)
 
 
-def contradiction(parameters: Parameters) -> str:
+def inconsistency(parameters: Parameters) -> str:
     """Friction may not fall with the shear rate: slow and fast flow would then be possible at one stress."""
     if parameters.dynamic_friction >= parameters.static_friction:
         return ""
@@ -151,7 +151,7 @@ LAW = Law(
     update=update,
     sound_speed=sound_speed,
     stored_energy=stored_energy,
-    contradiction=contradiction,
+    inconsistency=inconsistency,
     parameter_sets={
         "glass_beads": ParameterSet(
             PAPER._replace(

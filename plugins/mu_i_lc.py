@@ -44,7 +44,7 @@ from grainlaw.materials import (
     shear_modulus,
     stress_ratio,
 )
-from grainlaw.plugins.mu_i.friction import share_after_return
+from grainlaw.plugins.mu_i.friction import radial_return_factor
 from grainlaw.plugins.mu_i.resolutions import MU_I_LC
 
 
@@ -98,7 +98,7 @@ def update(
         parameters.grain_diameter * math.sqrt(parameters.grain_density)
     )
     reference_rate = rate_at_unit_pressure * math.sqrt(new_pressure)
-    share = share_after_return(
+    factor = radial_return_factor(
         trial_shear_stress,
         new_pressure,
         stiffness,
@@ -106,7 +106,7 @@ def update(
         parameters.dynamic_friction,
         reference_rate,
     )
-    return assembled_stress(new_pressure, scaled(trial, share if new_pressure > 0.0 else 0.0)), state
+    return assembled_stress(new_pressure, scaled(trial, factor if new_pressure > 0.0 else 0.0)), state
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
@@ -127,7 +127,7 @@ def stored_energy(stress: SymmetricTensor, density: float, state: State, paramet
     return isotropic_part + energy_of_shear(stress, density, modulus)
 
 
-def contradiction(parameters: Parameters) -> str:
+def inconsistency(parameters: Parameters) -> str:
     """Friction may not fall with the shear rate: slow and fast flow would then be possible at one stress."""
     if parameters.dynamic_friction >= parameters.static_friction:
         return ""
@@ -165,7 +165,7 @@ LAW = Law(
     update=update,
     sound_speed=sound_speed,
     stored_energy=stored_energy,
-    contradiction=contradiction,
+    inconsistency=inconsistency,
     parameter_sets={
         "paper": ParameterSet(PAPER, "Table 1; nu as for Cam Clay", density_of_table_1),
         "published_figure": ParameterSet(

@@ -125,7 +125,7 @@ def viscosity(
     return 2.0 / 3.0 * apparent_viscosity(max(0.0, pressure(stress)), rate, parameters)
 
 
-def contradiction(parameters: Parameters) -> str:
+def inconsistency(parameters: Parameters) -> str:
     """Friction may not fall with the shear rate: slow and fast flow would then be possible at one stress."""
     if parameters.dynamic_friction >= parameters.static_friction:
         return ""
@@ -151,7 +151,7 @@ LAW = Law(
     stored_energy=stored_energy,
     viscosity=viscosity,
     holds_in_single=True,
-    contradiction=contradiction,
+    inconsistency=inconsistency,
     parameter_sets={
         "paper": ParameterSet(
             Parameters(

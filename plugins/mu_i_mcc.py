@@ -23,7 +23,7 @@ A step. I is the plastic inertial number of the step, with p at its end, found t
 brackets (`plugins/cam_clay/rate_dependent_return_map.py`), for small steps by a fixed number of iterations
 (`plugins/cam_clay/rate_dependent_small_step.py`); (2) and (7) are in `plugins/cam_clay/rate_dependent.py`.
 
-Grains carry no tension: opened points keep a gap, as in `modified_cam_clay`.
+Grains carry no tension: opened points keep an opening strain, as in `modified_cam_clay`.
 
 Source: (1)-(4) as published with the HydraxMPM code, Lubbe et al. (2026), and the idea of mu(I)-MCC in Blatny et al.
 (2024); flow rule, (7) and integration are this project's.
@@ -41,7 +41,6 @@ from grainlaw.materials import (
     ParameterSet,
     StateVariable,
     SymmetricTensor,
-    after_closing,
     assembled_stress,
     deviator,
     deviatoric_stress,
@@ -52,6 +51,7 @@ from grainlaw.materials import (
     pressure,
     scaled,
     shear_modulus,
+    strain_in_contact,
     volumetric_strain_rate,
 )
 from grainlaw.plugins.cam_clay.rate_dependent import FlowingCamClay, growth_of_surface
@@ -93,7 +93,9 @@ class State(NamedTuple):
     """What a point remembers."""
 
     preconsolidation_pressure: Annotated[float, StateVariable("Pa", "size p_c0 of the yield surface at rest")]
-    gap: Annotated[float, StateVariable("1", "volumetric strain beyond the stress-free state; 0 while in contact")]
+    opening_strain: Annotated[
+        float, StateVariable("1", "volumetric strain beyond the stress-free state; 0 while in contact")
+    ]
     inertial_number: Annotated[float, StateVariable("1", "plastic inertial number I of the last step")]
 
 
@@ -113,18 +115,20 @@ def update(
     parameters: Parameters,
     dt: float,
 ) -> tuple[SymmetricTensor, State]:
-    """Close the gap if there is one, then the step with its own inertial number, and opening."""
-    contact = after_closing(volumetric_strain_rate(strain_rate) * dt, scaled(deviator(strain_rate), dt), state.gap)
-    if contact.gap > 0.0:
-        return isotropic(0.0), State(state.preconsolidation_pressure, contact.gap, 0.0)
+    """Close an opened point, then the step with its own inertial number, and opening."""
+    strain = strain_in_contact(
+        volumetric_strain_rate(strain_rate) * dt, scaled(deviator(strain_rate), dt), state.opening_strain
+    )
+    if strain.opening_strain > 0.0:
+        return isotropic(0.0), State(state.preconsolidation_pressure, strain.opening_strain, 0.0)
 
     smallest = parameters.stress_free_pressure
     constants = constants_of(parameters)
     step = flowing_cam_clay_step(
         max(pressure(stress), smallest),
         deviator(stress),
-        contact.compression,
-        contact.shear,
+        strain.compression,
+        strain.shear,
         state.preconsolidation_pressure,
         state.inertial_number,
         dt,
@@ -133,8 +137,8 @@ def update(
     smallest_size = 2.0 * smallest / growth_of_surface(step.surface_inertial_number, constants)
     size_at_rest = max(step.size_at_rest, smallest_size)
     if step.mean_pressure < smallest:
-        gap = parameters.swelling_index * math.log(smallest / step.mean_pressure)
-        return isotropic(0.0), State(size_at_rest, gap, 0.0)
+        opening_strain = parameters.swelling_index * math.log(smallest / step.mean_pressure)
+        return isotropic(0.0), State(size_at_rest, opening_strain, 0.0)
     return assembled_stress(step.mean_pressure, step.deviator), State(size_at_rest, 0.0, step.inertial_number)
 
 
@@ -160,7 +164,7 @@ def small_step(
         constants_of(parameters),
     )
     in_contact = min(start_pressure, new.mean_pressure, 0.5 * new.ratio * new.mean_pressure) >= smallest
-    succeeded = new.succeeded and in_contact and state.gap == 0.0
+    succeeded = new.succeeded and in_contact and state.opening_strain == 0.0
     return (
         assembled_stress(new.mean_pressure, new.deviator),
         State(new.size_at_rest, 0.0, new.inertial_number),
@@ -203,7 +207,7 @@ def at_bound(stress: SymmetricTensor, density: float, state: State, parameters: 
     return state.preconsolidation_pressure <= 2.0 * parameters.stress_free_pressure
 
 
-def contradiction(parameters: Parameters) -> str:
+def inconsistency(parameters: Parameters) -> str:
     """Compression has to be softer than swelling, and friction may not fall with the shear rate."""
     if parameters.compression_index <= parameters.swelling_index:
         return (
@@ -251,7 +255,7 @@ LAW = Law(
     sound_speed=sound_speed,
     stored_energy=stored_energy,
     at_bound=at_bound,
-    contradiction=contradiction,
+    inconsistency=inconsistency,
     small_step=small_step,
     parameter_sets={
         "paper": ParameterSet(PAPER, f"{SOURCE}; OCR = 1", density_on_compression_line),

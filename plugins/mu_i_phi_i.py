@@ -223,7 +223,7 @@ def stored_energy(stress: SymmetricTensor, density: float, state: State, paramet
     return isotropic_part + energy_of_shear(stress, density, modulus)
 
 
-def contradiction(parameters: Parameters) -> str:
+def inconsistency(parameters: Parameters) -> str:
     """Friction may not fall with the shear rate, and flow may not be densest at its loosest."""
     if parameters.dynamic_friction < parameters.static_friction:
         return (
@@ -266,7 +266,7 @@ LAW = Law(
     update=update,
     sound_speed=sound_speed,
     stored_energy=stored_energy,
-    contradiction=contradiction,
+    inconsistency=inconsistency,
     parameter_sets={
         "dem_shear": ParameterSet(
             DEM_SHEAR,

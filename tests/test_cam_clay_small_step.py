@@ -52,7 +52,7 @@ def test_open_points_and_points_that_open_are_left_to_the_update():
     law = get_material("modified_cam_clay")
     parameters = law.parameter_sets["paper"].parameters
     apart = SymmetricTensor(1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
-    for pressure_before, gap in ((0.0, 0.1), (0.0, 0.0), (1.0, 0.0), (1.5, 0.0)):
+    for pressure_before, opening_strain in ((0.0, 0.1), (0.0, 0.0), (1.0, 0.0), (1.5, 0.0)):
         stress = SymmetricTensor(*[-pressure_before] * 3, 0.0, 0.0, 0.0)
-        state = law.state(1e3, gap)
+        state = law.state(1e3, opening_strain)
         assert not law.small_step(stress, apart, 1500.0, state, parameters, 0.01)[2]

@@ -73,7 +73,7 @@ def test_no_step_leaves_the_cone_or_gives_out_energy(friction, dilatancy, cohesi
         )
         plastic = added(increment, scaled(elastic, -1.0))
         assert contraction(stress, plastic) >= -1e-14 * scale * scale / stiffness
-        assert state.gap <= max(0.0, trace(plastic)) + 1e-14 * (1.0 + scale / stiffness)
+        assert state.opening_strain <= max(0.0, trace(plastic)) + 1e-14 * (1.0 + scale / stiffness)
 
 
 def test_tension_ends_at_the_apex_and_comes_back_where_it_opened():
@@ -83,12 +83,12 @@ def test_tension_ends_at_the_apex_and_comes_back_where_it_opened():
     opening = isotropic(0.05 / 3.0)
     stress, state = LAW.update(stress, opening, 2650.0, state, parameters, 1.0)
     assert pressure(stress) == pytest.approx(-tension, rel=1e-12)
-    assert state.gap == pytest.approx(0.05 - tension / parameters.bulk_modulus, rel=1e-12)
+    assert state.opening_strain == pytest.approx(0.05 - tension / parameters.bulk_modulus, rel=1e-12)
     half_closed, state = LAW.update(stress, scaled(opening, -0.5), 2650.0, state, parameters, 1.0)
     assert half_closed == stress
     stress, state = LAW.update(half_closed, scaled(opening, -0.5), 2650.0, state, parameters, 1.0)
     assert pressure(stress) == pytest.approx(0.0, abs=1e-9 * tension)
-    assert state.gap == 0.0
+    assert state.opening_strain == 0.0
 
 
 def test_open_grains_carry_no_shear():

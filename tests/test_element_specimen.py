@@ -80,7 +80,7 @@ def test_table_has_names_units_and_every_kept_state(tmp_path):
     result.write_csv(path)
     header, *rows = csv.reader(path.open())
     assert header[:2] == ["time [s]", "stress_xx [Pa]"]
-    assert header[-2:] == ["preconsolidation_pressure [Pa]", "gap [1]"]
+    assert header[-2:] == ["preconsolidation_pressure [Pa]", "opening_strain [1]"]
     values = np.array(rows, dtype=float)
     assert np.array_equal(values[:, header.index("pressure [Pa]")], result.pressure)
     assert values.shape == (len(result.points), len(header))

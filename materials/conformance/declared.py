@@ -86,12 +86,12 @@ def units(subject: Subject) -> Outcome:
 
 
 def bounds(subject: Subject) -> Outcome:
-    """Parameters anywhere within their bounds are refused as contradictory or give finite answers."""
+    """Parameters anywhere within their bounds are refused as inconsistent or give finite answers."""
     law = subject.law
     draws, refused = list(_draws(subject)), 0
     for values in draws:
         parameters = law.parameters(**values)
-        if law.contradiction(parameters):
+        if law.inconsistency(parameters):
             refused += 1
             continue
         fault = _fault_of(subject, parameters)
@@ -99,7 +99,7 @@ def bounds(subject: Subject) -> Outcome:
             return Outcome(
                 "FAIL", f"{fault} at " + ", ".join(f"{name} = {value:.3g}" for name, value in values.items())
             )
-    return Outcome("pass", f"{len(draws)} draws, {refused} refused as contradictory, the others finite")
+    return Outcome("pass", f"{len(draws)} draws, {refused} refused as inconsistent, the others finite")
 
 
 def _draws(subject: Subject) -> Iterator[dict[str, float]]:

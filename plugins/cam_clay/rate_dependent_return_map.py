@@ -3,10 +3,10 @@
 I is that of the plastic shear of the step, with p at its end. For an assumed I the step is one of Cam Clay with M(I)
 and p_c(I) (`cam_clay_step`, exact and bracketed), and gives back a plastic shear, so an inertial number. A larger
 assumed I makes a larger surface, so less plastic shear: what is found falls while what is assumed rises. The one root
-is found by the secant method, begun at the I of the step before, with bisection wherever that leaves its bracket. The
-return of Cam Clay leaves a trace of F, which a fast step would magnify in I; its end lies exactly on the surface of a
-slightly different I, and that one counts as assumed. An elastic step gives the largest I at which there is flow. A step
-of some per cent can soften so much that its return jumps over that root; it is then taken in equal parts.
+is found by the secant method from the I of the step before, with bisection wherever that leaves its bracket. The return
+of Cam Clay leaves a trace of F, which a fast step would magnify in I; its end lies exactly on the surface of a slightly
+different I, and that one counts as assumed. An elastic step gives the largest I at which there is flow. A step of some
+per cent can soften so much that its return jumps over that root; it is then taken in equal substeps.
 
 Source: this project's.
 """
@@ -106,24 +106,24 @@ def flowing_cam_clay_step(
     Clay does not converge.
     """
     increment = Increment(start_pressure, start_deviator, compression, shear, size_at_rest, dt)
-    flow = flow_in_parts(increment, expected_inertial_number, constants)
+    flow = substepped_where_it_jumps(increment, expected_inertial_number, constants)
     return FlowingStep(flow.end.mean_pressure, flow.end.deviator, flow.size_at_rest, flow.found, flow.assumed)
 
 
 @pointwise
-def flow_in_parts(increment: Increment, guess: float, constants: FlowingCamClay) -> Flow:
+def substepped_where_it_jumps(increment: Increment, guess: float, constants: FlowingCamClay) -> Flow:
     """The whole step or, where its return jumps, the last of as many equal parts as it takes not to."""
     size = abs(increment.compression) + half_norm(increment.shear)
     parts = 1
     while True:
-        flow, is_consistent = led_through(increment, parts, guess, constants)
+        flow, is_consistent = substepped(increment, parts, guess, constants)
         if is_consistent or size <= SMALLEST_PART * parts:
             return flow
         parts *= 4
 
 
 @pointwise
-def led_through(increment: Increment, parts: int, guess: float, constants: FlowingCamClay) -> tuple[Flow, bool]:
+def substepped(increment: Increment, parts: int, guess: float, constants: FlowingCamClay) -> tuple[Flow, bool]:
     """The last of equal parts of a step, and whether each had the inertial number of its own plastic strain."""
     start = CamClayStep(increment.start_pressure, increment.size_at_rest, increment.start_deviator, 0.0, 0.0)
     flow, is_consistent = Flow(start, increment.size_at_rest, 0.0, guess, 0.0, 0.0), True

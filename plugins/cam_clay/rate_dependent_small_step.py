@@ -31,14 +31,14 @@ from grainlaw.plugins.cam_clay.small_step import (
     LARGEST_EXPONENT,
     STRAIN_TOLERANCE,
     TrialInvariants,
+    exponential_series,
     flow_factor,
     inverse_swelling_index,
+    mean_over_path_series,
     q_squared_at,
-    short_exponential,
-    short_mean_over_path,
     slope_of_mean,
     slope_of_q_squared,
-    trial_of,
+    trial_invariants,
 )
 
 # exp(x) is that of a small part of x, squared this often.
@@ -76,7 +76,7 @@ class FlowingIterate(NamedTuple):
     relaxation: float
     of_flow: float
     of_yield: float
-    shrunk: float
+    inverse_growth: float
     mean: float
     growth: float
     q_squared: float
@@ -100,29 +100,31 @@ def flowing_cam_clay_small_step(
     constants: FlowingCamClay,
 ) -> SmallFlowingStep:
     """One strain increment in contact, if it is small enough for that; arguments as of `flowing_cam_clay_step`."""
-    trial, sheared = trial_of(start_pressure, start_deviator, compression, shear, size_at_rest, at_rest(constants))
+    trial, sheared = trial_invariants(
+        start_pressure, start_deviator, compression, shear, size_at_rest, at_rest(constants)
+    )
     number = number_factor(dt, constants) * math.sqrt(1.0 / start_pressure)
-    elastic = evaluated_in_flow(0.0, 0.0, trial, number, constants)
-    first = begun(elastic, expected_inertial_number, trial, number, constants)
-    second = improved_in_flow(first, trial, number, constants)
-    third = improved_in_flow(second, trial, number, constants)
-    fourth = improved_in_flow(third, trial, number, constants)
-    last = improved_in_flow(fourth, trial, number, constants)
+    elastic = residuals_in_flow(0.0, 0.0, trial, number, constants)
+    first = first_iterate(elastic, expected_inertial_number, trial, number, constants)
+    second = newton_step_in_flow(first, trial, number, constants)
+    third = newton_step_in_flow(second, trial, number, constants)
+    fourth = newton_step_in_flow(third, trial, number, constants)
+    last = newton_step_in_flow(fourth, trial, number, constants)
 
     yields = elastic.of_yield > 0.0
     inverse_grown = last.inverse_grown if yields else 1.0
-    shrunk = last.shrunk if yields else elastic.shrunk
+    inverse_growth = last.inverse_growth if yields else elastic.inverse_growth
     mean = last.mean if yields else elastic.mean
     ratio_at_rest = last.ratio_at_rest if yields else elastic.ratio_at_rest
     ratio = last.ratio if yields else elastic.ratio
-    p = start_pressure / shrunk
+    p = start_pressure / inverse_growth
     s = scaled(added(start_deviator, scaled(sheared, p * mean)), inverse_grown)
     succeeded = is_short(elastic, constants) and (not yields or (is_root(last) and is_short(last, constants)))
     return SmallFlowingStep(p, ratio_at_rest * p, s, last.inertial_number if yields else 0.0, ratio, succeeded)
 
 
 @pointwise
-def begun(
+def first_iterate(
     elastic: FlowingIterate, expected: float, trial: TrialInvariants, number: float, constants: FlowingCamClay
 ) -> FlowingIterate:
     """Where the inertial number is the expected one, as nearly as is known before there is plastic strain."""
@@ -131,24 +133,24 @@ def begun(
     slope = steady_stress_ratio(expected, constants) / constants.critical_state_ratio
     ratio = elastic.ratio_at_rest * growth_by_squaring(expected, constants)
     x = flow_factor(at_rest(constants)) * slope * slope * relaxation * (2.0 - ratio)
-    return evaluated_in_flow(x, relaxation, trial, number, constants)
+    return residuals_in_flow(x, relaxation, trial, number, constants)
 
 
 @pointwise
-def evaluated_in_flow(
+def residuals_in_flow(
     plastic_compression: float, relaxation: float, trial: TrialInvariants, number: float, constants: FlowingCamClay
 ) -> FlowingIterate:
     """The residuals of both equations at given unknowns; `number` is b."""
     shrinking = plastic_compression * inverse_swelling_index(at_rest(constants))
     growth = trial.growth - shrinking
-    shrunk = trial.shrunk * short_exponential(shrinking)
-    mean = short_mean_over_path(growth)
-    q_squared = max(q_squared_at(shrunk, mean, trial), SMALLEST_Q_SQUARED)
+    inverse_growth = trial.inverse_growth * exponential_series(shrinking)
+    mean = mean_over_path_series(growth)
+    q_squared = max(q_squared_at(inverse_growth, mean, trial), SMALLEST_Q_SQUARED)
     grown = 1.0 + relaxation
     inverse_grown = 1.0 / grown
-    per_share = number * math.sqrt(q_squared * shrunk) / mean
+    per_share = number * math.sqrt(q_squared * inverse_growth) / mean
     inertial_number = max(0.0, per_share * relaxation * inverse_grown)
-    ratio_at_rest = trial.ratio * short_exponential(plastic_compression * total_slope(at_rest(constants)))
+    ratio_at_rest = trial.ratio * exponential_series(plastic_compression * total_slope(at_rest(constants)))
     ratio = ratio_at_rest * growth_by_squaring(inertial_number, constants)
     slope = steady_stress_ratio(inertial_number, constants) * (1.0 / constants.critical_state_ratio)
     square = slope * slope
@@ -159,7 +161,7 @@ def evaluated_in_flow(
         relaxation,
         of_flow,
         of_yield,
-        shrunk,
+        inverse_growth,
         mean,
         growth,
         q_squared,
@@ -173,13 +175,13 @@ def evaluated_in_flow(
 
 
 @pointwise
-def improved_in_flow(
+def newton_step_in_flow(
     last: FlowingIterate, trial: TrialInvariants, number: float, constants: FlowingCamClay
 ) -> FlowingIterate:
     """One step of Newton's method for both unknowns."""
     d_shrinking = inverse_swelling_index(at_rest(constants))
     d_mean = slope_of_mean(last.growth) * d_shrinking
-    d_q_squared = slope_of_q_squared(last.shrunk, last.mean, d_mean, trial, at_rest(constants))
+    d_q_squared = slope_of_q_squared(last.inverse_growth, last.mean, d_mean, trial, at_rest(constants))
     number_x = last.inertial_number * (0.5 * d_q_squared / last.q_squared + 0.5 * d_shrinking - d_mean / last.mean)
     number_n = last.per_share * last.inverse_grown * last.inverse_grown
     ratio_x = last.ratio * fused(number_x, growth_per_number(constants), total_slope(at_rest(constants)))
@@ -198,7 +200,7 @@ def improved_in_flow(
     scale = -1.0 / fused(flow_x, yield_n, -flow_n * yield_x)
     x = fused(fused(last.of_flow, yield_n, -flow_n * last.of_yield), scale, last.plastic_compression)
     n = fused(fused(flow_x, last.of_yield, -last.of_flow * yield_x), scale, last.relaxation)
-    return evaluated_in_flow(x, n, trial, number, constants)
+    return residuals_in_flow(x, n, trial, number, constants)
 
 
 @pointwise
@@ -219,7 +221,7 @@ def is_short(state: FlowingIterate, constants: FlowingCamClay) -> bool:
 @pointwise
 def growth_by_squaring(number: float, constants: FlowingCamClay) -> float:
     """p_c/p_c0, without a call of the exponential function, which takes one point at a time."""
-    growth = short_exponential(min(number * growth_per_number(constants) * (1.0 / PARTS), LARGEST_EXPONENT))
+    growth = exponential_series(min(number * growth_per_number(constants) * (1.0 / PARTS), LARGEST_EXPONENT))
     for _ in range(SQUARINGS):
         growth = growth * growth
     return growth

@@ -67,18 +67,18 @@ class Trial(NamedTuple):
     start_ratio     s/p at the start [1]
     shear           deviatoric strain increment [1]
     growth          ln(p_trial/p) and
-    shrunk          p/p_trial [1]
-    wetness         ln(2 p_trial/p_c), positive on the wet side of the critical state, and
-    dry_ratio       p_c/(2 p_trial) [1]
+    inverse_growth  p/p_trial [1]
+    log_pressure_ratio   ln(2 p_trial/p_c), positive on the wet side of the critical state, and
+    critical_ratio  p_c/(2 p_trial) [1]
     """
 
     start_pressure: float
     start_ratio: SymmetricTensor
     shear: SymmetricTensor
     growth: float
-    shrunk: float
-    wetness: float
-    dry_ratio: float
+    inverse_growth: float
+    log_pressure_ratio: float
+    critical_ratio: float
 
 
 class YieldState(NamedTuple):
@@ -121,9 +121,11 @@ def cam_clay_step(
     iteration does not converge.
     """
     growth = compression / constants.swelling_index
-    shrunk = exponential(-growth)
-    p = start_pressure / shrunk
-    modulus = shear_modulus(p * mean_over_path(growth, shrunk) / constants.swelling_index, constants.poisson_ratio)
+    inverse_growth = exponential(-growth)
+    p = start_pressure / inverse_growth
+    modulus = shear_modulus(
+        p * mean_over_path(growth, inverse_growth) / constants.swelling_index, constants.poisson_ratio
+    )
     s = added(start_deviator, scaled(shear, 2.0 * modulus))
     m = constants.critical_state_ratio
     if 1.5 * contraction(s, s) / (m * m) <= p * (preconsolidation_pressure - p):
@@ -153,32 +155,34 @@ def elastic_trial(
 ) -> Trial:
     """One strain increment taken as elastic, as the return starts from it."""
     growth = compression / constants.swelling_index
-    shrunk = exponential(-growth)
-    wetness = math.log(2.0 * start_pressure / preconsolidation_pressure) + growth
-    dry_ratio = 0.5 * preconsolidation_pressure * shrunk / start_pressure
+    inverse_growth = exponential(-growth)
+    log_pressure_ratio = math.log(2.0 * start_pressure / preconsolidation_pressure) + growth
+    critical_ratio = 0.5 * preconsolidation_pressure * inverse_growth / start_pressure
     start_ratio = scaled(start_deviator, 1.0 / start_pressure)
-    return Trial(start_pressure, start_ratio, shear, growth, shrunk, wetness, dry_ratio)
+    return Trial(start_pressure, start_ratio, shear, growth, inverse_growth, log_pressure_ratio, critical_ratio)
 
 
 @pointwise
 def return_to_yield_surface(trial: Trial, constants: CamClay, expected: float) -> YieldState:
     """The state with F = 0 at the end of the step; NaN if the iteration does not converge."""
-    bracket = first_bracket(trial.wetness)
-    theta = 1.0 - expected * total_slope(constants) / trial.wetness if trial.wetness != 0.0 else 1.0
+    bracket = first_bracket(trial.log_pressure_ratio)
+    theta = (
+        1.0 - expected * total_slope(constants) / trial.log_pressure_ratio if trial.log_pressure_ratio != 0.0 else 1.0
+    )
     if 0.0 < theta < bracket.above:
         bracket = Bracket(theta, bracket.below, bracket.above)
     for _ in range(MAXIMUM_ITERATIONS):
         new = yield_state(bracket.theta, trial, constants)
         if is_on_yield_surface(new):
             return new
-        bracket = narrowed(bracket, new)
+        bracket = updated_bracket(bracket, new)
     return YieldState(math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan)
 
 
 @pointwise
-def first_bracket(wetness: float) -> Bracket:
+def first_bracket(log_pressure_ratio: float) -> Bracket:
     """All of (0, 1], but for theta > ln 2 / a on the wet side, where p > p_c and no stress is on the ellipse."""
-    above = min(1.0, math.log(2.0) / wetness) if wetness > 0.0 else 1.0
+    above = min(1.0, math.log(2.0) / log_pressure_ratio) if log_pressure_ratio > 0.0 else 1.0
     return Bracket(above, 0.0, above)
 
 
@@ -189,7 +193,7 @@ def is_on_yield_surface(state: YieldState) -> bool:
 
 
 @pointwise
-def narrowed(bracket: Bracket, state: YieldState) -> Bracket:
+def updated_bracket(bracket: Bracket, state: YieldState) -> Bracket:
     """The bracket without the side of theta where the root is not, and Newton's theta or, outside it, the middle."""
     below, above = bracket.below, bracket.above
     if state.residual > 0.0:
@@ -217,26 +221,26 @@ def yield_state(theta: float, trial: Trial, constants: CamClay) -> YieldState:
     elastic_share = 1.0 / (kappa * total_slope(constants))
     stiffness = shear_modulus(1.0 / kappa, constants.poisson_ratio)
 
-    z = trial.wetness * theta
-    dry_ratio = exponential_near(-z, -trial.wetness, trial.dry_ratio)
-    log_growth = trial.growth - elastic_share * trial.wetness * (1.0 - theta)
-    shrunk = exponential_near(-log_growth, -trial.growth, trial.shrunk)
-    p = trial.start_pressure / shrunk
-    w = 2.0 * dry_ratio - 1.0
+    z = trial.log_pressure_ratio * theta
+    critical_ratio = exponential_near(-z, -trial.log_pressure_ratio, trial.critical_ratio)
+    log_growth = trial.growth - elastic_share * trial.log_pressure_ratio * (1.0 - theta)
+    inverse_growth = exponential_near(-log_growth, -trial.growth, trial.inverse_growth)
+    p = trial.start_pressure / inverse_growth
+    w = 2.0 * critical_ratio - 1.0
 
-    mean_modulus = stiffness * mean_over_path(log_growth, shrunk)
-    at_start, sheared = scaled(trial.start_ratio, shrunk), scaled(trial.shear, 2.0 * mean_modulus)
+    mean_modulus = stiffness * mean_over_path(log_growth, inverse_growth)
+    at_start, sheared = scaled(trial.start_ratio, inverse_growth), scaled(trial.shear, 2.0 * mean_modulus)
     s = added(at_start, sheared)
     trial_squared = 1.5 / m_squared * contraction(s, s)
-    slope = 3.0 / (total_slope(constants) * m_squared) * mean_modulus / mean_over_path(z, dry_ratio)
+    slope = 3.0 / (total_slope(constants) * m_squared) * mean_modulus / mean_over_path(z, critical_ratio)
     n = slope * (1.0 - theta) / theta
 
     dz = -z * theta
     dlog_p = elastic_share * dz
-    dlog_mean = log_derivative_of_mean(log_growth, shrunk)
+    dlog_mean = log_derivative_of_mean(log_growth, inverse_growth)
     ds = added(scaled(at_start, -1.0), scaled(sheared, dlog_mean))
     dtrial_squared = 3.0 / m_squared * contraction(s, ds) * dlog_p
-    dn = slope + n * (dlog_mean * dlog_p - log_derivative_of_mean(z, dry_ratio) * dz)
+    dn = slope + n * (dlog_mean * dlog_p - log_derivative_of_mean(z, critical_ratio) * dz)
     dw = -(w + 1.0) * dz
 
     shrinkage = 1.0 / (1.0 + n)
@@ -253,7 +257,7 @@ def yield_state(theta: float, trial: Trial, constants: CamClay) -> YieldState:
         relaxation_rate = 0.0
         newton_step = -residual / (dtrial_squared - (1.0 + n) * (2.0 * dn * w + (1.0 + n) * dw))
     yield_function = (relaxed_squared - w) * p * p
-    p_c = 2.0 * dry_ratio * p
+    p_c = 2.0 * critical_ratio * p
     return YieldState(p, p_c, mean_modulus * p, n, yield_function, residual, newton_step, relaxation_rate)
 
 

@@ -36,13 +36,13 @@ class TrialInvariants(NamedTuple):
     """What the residuals need of the elastic trial state.
 
     growth       ln(p_trial/p) of the elastic trial
-    shrunk       p/p_trial
+    inverse_growth   p/p_trial
     ratio        p_c/p_trial
     q_squared_0, q_squared_1, q_squared_2   coefficients of (q_trial/(M p))^2 in p_start/p and m
     """
 
     growth: float
-    shrunk: float
+    inverse_growth: float
     ratio: float
     q_squared_0: float
     q_squared_1: float
@@ -56,7 +56,7 @@ class Iterate(NamedTuple):
     relaxation: float
     of_flow: float
     of_yield: float
-    shrunk: float
+    inverse_growth: float
     mean: float
     ratio: float
     growth: float
@@ -72,18 +72,20 @@ def cam_clay_small_step(
     constants: CamClay,
 ) -> SmallStep:
     """One strain increment in contact, elastic or returned to F = 0, if it is small enough for that."""
-    trial, sheared = trial_of(start_pressure, start_deviator, compression, shear, preconsolidation_pressure, constants)
-    elastic = evaluated(0.0, 0.0, trial, constants)
-    first = improved(elastic, trial, constants)
-    second = improved(first, trial, constants)
-    last = improved(improved(second, trial, constants), trial, constants)
+    trial, sheared = trial_invariants(
+        start_pressure, start_deviator, compression, shear, preconsolidation_pressure, constants
+    )
+    elastic = residuals_at(0.0, 0.0, trial, constants)
+    first = newton_step(elastic, trial, constants)
+    second = newton_step(first, trial, constants)
+    last = newton_step(newton_step(second, trial, constants), trial, constants)
 
     yields = elastic.of_yield > 0.0
     relaxation = last.relaxation if yields else 0.0
-    end_shrunk = last.shrunk if yields else trial.shrunk
+    end_inverse_growth = last.inverse_growth if yields else trial.inverse_growth
     mean = last.mean if yields else elastic.mean
     ratio = last.ratio if yields else trial.ratio
-    p = start_pressure / end_shrunk
+    p = start_pressure / end_inverse_growth
     s = scaled(added(start_deviator, scaled(sheared, p * mean)), 1.0 / (1.0 + relaxation))
     error = max(abs(last.of_yield) - TOLERANCE * last.ratio, abs(last.of_flow) - STRAIN_TOLERANCE)
     exponent = max(abs(last.growth), abs(last.plastic_compression) * total_slope(constants))
@@ -93,7 +95,7 @@ def cam_clay_small_step(
 
 
 @pointwise
-def trial_of(
+def trial_invariants(
     start_pressure: float,
     start_deviator: SymmetricTensor,
     compression: float,
@@ -106,13 +108,13 @@ def trial_of(
     stiffness = shear_modulus(inverse_swelling_index(constants), constants.poisson_ratio)
     inverse_pressure = 1.0 / start_pressure
     growth = compression * inverse_swelling_index(constants)
-    shrunk = short_exponential(-growth)
+    inverse_growth = exponential_series(-growth)
     at_start = scaled(start_deviator, inverse_pressure)
     sheared = scaled(shear, 2.0 * stiffness)
     trial = TrialInvariants(
         growth,
-        shrunk,
-        preconsolidation_pressure * inverse_pressure * shrunk,
+        inverse_growth,
+        preconsolidation_pressure * inverse_pressure * inverse_growth,
         1.5 / m_squared * contraction(at_start, at_start),
         3.0 / m_squared * contraction(at_start, sheared),
         1.5 / m_squared * contraction(sheared, sheared),
@@ -121,25 +123,25 @@ def trial_of(
 
 
 @pointwise
-def evaluated(plastic_compression: float, relaxation: float, trial: TrialInvariants, constants: CamClay) -> Iterate:
+def residuals_at(plastic_compression: float, relaxation: float, trial: TrialInvariants, constants: CamClay) -> Iterate:
     """The residuals of both equations at given unknowns."""
     shrinking = plastic_compression * inverse_swelling_index(constants)
     growth = trial.growth - shrinking
-    shrunk = trial.shrunk * short_exponential(shrinking)
-    mean = short_mean_over_path(growth)
-    ratio = trial.ratio * short_exponential(plastic_compression * total_slope(constants))
+    inverse_growth = trial.inverse_growth * exponential_series(shrinking)
+    mean = mean_over_path_series(growth)
+    ratio = trial.ratio * exponential_series(plastic_compression * total_slope(constants))
     grown = 1.0 + relaxation
     of_flow = fused(plastic_compression, mean, flow_factor(constants) * relaxation * (ratio - 2.0))
-    of_yield = fused(grown * grown, 1.0 - ratio, q_squared_at(shrunk, mean, trial))
-    return Iterate(plastic_compression, relaxation, of_flow, of_yield, shrunk, mean, ratio, growth)
+    of_yield = fused(grown * grown, 1.0 - ratio, q_squared_at(inverse_growth, mean, trial))
+    return Iterate(plastic_compression, relaxation, of_flow, of_yield, inverse_growth, mean, ratio, growth)
 
 
 @pointwise
-def improved(last: Iterate, trial: TrialInvariants, constants: CamClay) -> Iterate:
+def newton_step(last: Iterate, trial: TrialInvariants, constants: CamClay) -> Iterate:
     """One step of Newton's method for both unknowns."""
     d_mean = slope_of_mean(last.growth) * inverse_swelling_index(constants)
     d_ratio = total_slope(constants) * last.ratio
-    d_q_squared = slope_of_q_squared(last.shrunk, last.mean, d_mean, trial, constants)
+    d_q_squared = slope_of_q_squared(last.inverse_growth, last.mean, d_mean, trial, constants)
     grown = 1.0 + last.relaxation
     factor = flow_factor(constants)
     flow_x = fused(factor * last.relaxation, d_ratio, fused(last.plastic_compression, d_mean, last.mean))
@@ -149,23 +151,25 @@ def improved(last: Iterate, trial: TrialInvariants, constants: CamClay) -> Itera
     scale = -1.0 / fused(flow_x, yield_n, -flow_n * yield_x)
     x = fused(fused(last.of_flow, yield_n, -flow_n * last.of_yield), scale, last.plastic_compression)
     n = fused(fused(flow_x, last.of_yield, -last.of_flow * yield_x), scale, last.relaxation)
-    return evaluated(x, n, trial, constants)
+    return residuals_at(x, n, trial, constants)
 
 
 @pointwise
-def q_squared_at(shrunk: float, mean: float, trial: TrialInvariants) -> float:
+def q_squared_at(inverse_growth: float, mean: float, trial: TrialInvariants) -> float:
     """(q_trial/(M p))^2."""
-    linear = fused(trial.q_squared_0, shrunk, trial.q_squared_1 * mean)
-    return fused(shrunk, linear, trial.q_squared_2 * mean * mean)
+    linear = fused(trial.q_squared_0, inverse_growth, trial.q_squared_1 * mean)
+    return fused(inverse_growth, linear, trial.q_squared_2 * mean * mean)
 
 
 @pointwise
-def slope_of_q_squared(shrunk: float, mean: float, d_mean: float, trial: TrialInvariants, constants: CamClay) -> float:
+def slope_of_q_squared(
+    inverse_growth: float, mean: float, d_mean: float, trial: TrialInvariants, constants: CamClay
+) -> float:
     """The same, per plastic volume strain; `d_mean` is that of m."""
-    d_shrunk = shrunk * inverse_swelling_index(constants)
-    of_shrunk = fused(2.0 * trial.q_squared_0, shrunk, trial.q_squared_1 * mean)
-    of_mean = fused(trial.q_squared_1, shrunk, 2.0 * trial.q_squared_2 * mean)
-    return fused(of_shrunk, d_shrunk, of_mean * d_mean)
+    d_inverse_growth = inverse_growth * inverse_swelling_index(constants)
+    of_growth = fused(2.0 * trial.q_squared_0, inverse_growth, trial.q_squared_1 * mean)
+    of_mean = fused(trial.q_squared_1, inverse_growth, 2.0 * trial.q_squared_2 * mean)
+    return fused(of_growth, d_inverse_growth, of_mean * d_mean)
 
 
 @pointwise
@@ -188,7 +192,7 @@ def inverse_swelling_index(constants: CamClay) -> float:
 
 
 @pointwise
-def short_exponential(x: float) -> float:
+def exponential_series(x: float) -> float:
     """exp(x) by its power series, for |x| <= LARGEST_EXPONENT."""
     square = x * x
     low, middle = fused(x, 0.5, 1.0), fused(x, 1.0 / 24.0, 1.0 / 6.0)
@@ -197,7 +201,7 @@ def short_exponential(x: float) -> float:
 
 
 @pointwise
-def short_mean_over_path(growth: float) -> float:
+def mean_over_path_series(growth: float) -> float:
     """(1 - exp(-growth))/growth by its power series, for |growth| <= LARGEST_EXPONENT."""
     x = -growth
     square = x * x

@@ -15,7 +15,7 @@ def friction_of_inertial_number(
 
 
 @pointwise
-def share_after_return(
+def radial_return_factor(
     trial_shear_stress: float,
     pressure: float,
     stiffness: float,

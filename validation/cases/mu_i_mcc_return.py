@@ -69,7 +69,7 @@ def compiled_step() -> Any:
 
 
 def stepped(increments: Increments) -> np.ndarray:
-    """The pressure p and s [Pa], then p_c0, gap and I after the increments; shape (10, count)."""
+    """The pressure p and s [Pa], then p_c0, opening strain and I after the increments; shape (10, count)."""
     results = np.empty((10, increments.cases.shape[1]))
     compiled_step()(increments.cases, increments.durations, increments.guesses, PARAMETERS, results)
     return results

@@ -22,7 +22,7 @@ LAWS = {
 }
 
 
-def cycled(law: Law, parameters: Any, forgets_gap: bool = False) -> list[tuple[float, float]]:
+def cycled(law: Law, parameters: Any, forgets_opening: bool = False) -> list[tuple[float, float]]:
     """Volumetric strain (compression-positive) and pressure [Pa] over ten cycles of isotropic opening and closing."""
     stress = isotropic(-PRESSURE)
     density, strain = DENSITY, 0.0
@@ -35,8 +35,8 @@ def cycled(law: Law, parameters: Any, forgets_gap: bool = False) -> list[tuple[f
                 density *= math.exp(increment)
                 strain += increment
                 stress, state = step(law, parameters, stress, density, state, increment)
-                if forgets_gap:
-                    state = state._replace(gap=0.0)
+                if forgets_opening:
+                    state = state._replace(opening_strain=0.0)
                 found.append((strain, pressure(stress)))
     return found
 
@@ -70,7 +70,7 @@ def measure(effort: Effort) -> Evidence:
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """Modified Cam Clay that takes up pressure as soon as it is compressed."""
     law = get_material("modified_cam_clay")
-    found = cycled(law, law.parameter_sets["paper_ocr4"].parameters, forgets_gap=True)
+    found = cycled(law, law.parameter_sets["paper_ocr4"].parameters, forgets_opening=True)
     return (returned("modified_cam_clay", found),)
 
 
@@ -80,7 +80,7 @@ CASE = Case(
     proves="opened material closes at the volume at which it opened: a pile cannot swell by being shaken",
     reference="the pressure of the start at the volume of the start",
     norm="relative error of the pressure",
-    mistake="the gap of an opened point is forgotten at each step",
+    mistake="the opening strain of a point is forgotten at each step",
     measure=measure,
     control=control,
 )

@@ -32,8 +32,8 @@ def compiled() -> tuple[Callable[..., Any], Callable[..., Any]]:
     law = pointwise_law(LAW)
     step, state = registered(cam_clay.cam_clay_step), registered(cam_clay.yield_state)
     first, is_on_surface = registered(cam_clay.first_bracket), registered(cam_clay.is_on_yield_surface)
-    trial, narrowed = registered(cam_clay.elastic_trial), registered(cam_clay.narrowed)
-    mark = f"{law.mark}_{mark_of_reached((step, state, first, is_on_surface, trial, narrowed))}"
+    trial, updated_bracket = registered(cam_clay.elastic_trial), registered(cam_clay.updated_bracket)
+    mark = f"{law.mark}_{mark_of_reached((step, state, first, is_on_surface, trial, updated_bracket))}"
 
     @njit(cache=True)
     @named(mark)
@@ -68,13 +68,13 @@ def compiled() -> tuple[Callable[..., Any], Callable[..., Any]]:
                 cases[8, k] + third, cases[9, k] + third, cases[10, k] + third, cases[11, k], cases[12, k], cases[13, k]
             )
             start = trial(cases[0, k], s, compression, shear, cases[1, k], constants)
-            bracket = first(start.wetness)
+            bracket = first(start.log_pressure_ratio)
             for count in range(1, longest + 1):
                 new = state(bracket.theta, start, constants)
                 counts[k] = count
                 if is_on_surface(new):
                     break
-                bracket = narrowed(bracket, new)
+                bracket = updated_bracket(bracket, new)
 
     return stepped, evaluations
 
