@@ -24,7 +24,6 @@ from grainlaw.materials.rheology import (
 )
 from grainlaw.materials.tensor import (
     SymmetricTensor,
-    added,
     assembled_stress,
     congruent,
     contraction,
@@ -35,7 +34,6 @@ from grainlaw.materials.tensor import (
     half_norm,
     isotropic,
     pressure,
-    scaled,
     shear_strain_rate,
     trace,
     volumetric_strain_rate,
@@ -52,7 +50,6 @@ __all__ = [
     "StateVariable",
     "StrainInContact",
     "SymmetricTensor",
-    "added",
     "assembled_stress",
     "checked_parameters",
     "congruent",
@@ -74,7 +71,6 @@ __all__ = [
     "pointwise",
     "pressure",
     "registry",
-    "scaled",
     "shear_modulus",
     "shear_strain_rate",
     "strain_in_contact",

@@ -17,6 +17,7 @@ from numba import njit
 from numba.core.errors import NumbaError, UnsupportedBytecodeError
 from numba.extending import intrinsic, overload, register_jitable
 
+import grainlaw.materials.tensor_operators  # noqa: F401  the operators of SymmetricTensor
 from grainlaw.materials.elementary import fused
 from grainlaw.materials.errors import InputError
 from grainlaw.materials.kernel_cache import use_kernel_cache

@@ -8,7 +8,7 @@ beyond the state in which contact was lost.
 from typing import NamedTuple
 
 from grainlaw.materials.pointwise import pointwise
-from grainlaw.materials.tensor import SymmetricTensor, scaled
+from grainlaw.materials.tensor import SymmetricTensor, isotropic
 
 
 class StrainInContact(NamedTuple):
@@ -28,6 +28,6 @@ def strain_in_contact(compression: float, shear: SymmetricTensor, opening_strain
     if opening_strain <= 0.0:
         return StrainInContact(compression, shear, 0.0)
     if compression <= opening_strain:
-        return StrainInContact(0.0, scaled(shear, 0.0), opening_strain - compression)
+        return StrainInContact(0.0, isotropic(0.0), opening_strain - compression)
     closed = compression - opening_strain
-    return StrainInContact(closed, scaled(shear, closed / compression), 0.0)
+    return StrainInContact(closed, closed / compression * shear, 0.0)

@@ -1,11 +1,13 @@
 """Symmetric tensors and their invariants, one definition each.
 
 Tensors are tension-positive; pressure is compression-positive. Every function here takes and returns scalars or
-`SymmetricTensor`s, works as plain Python and is compiled together with the law that calls it.
+`SymmetricTensor`s, works as plain Python and is compiled together with the law that calls it. So do the operators of a
+tensor, a + b, a - b, -a, 2.0 * a, a * 2.0 and a / 2.0 (compiled: `tensor_operators`).
 """
 
 import math
-from typing import NamedTuple
+from numbers import Real
+from typing import Any, NamedTuple
 
 from grainlaw.materials.pointwise import pointwise
 
@@ -22,6 +24,48 @@ class SymmetricTensor(NamedTuple):
     xy: float
     yz: float
     xz: float
+
+    def __add__(self, other: "SymmetricTensor") -> "SymmetricTensor":  # type: ignore[override]
+        """The sum of two tensors; a tuple would be appended, so nothing else is taken."""
+        return added(self, _checked(other, "+"))
+
+    def __radd__(self, other: Any) -> "SymmetricTensor":
+        """Only reached with something that is no tensor."""
+        return added(_checked(other, "+"), self)
+
+    def __sub__(self, other: "SymmetricTensor") -> "SymmetricTensor":
+        return difference(self, _checked(other, "-"))
+
+    def __rsub__(self, other: Any) -> "SymmetricTensor":
+        return difference(_checked(other, "-"), self)
+
+    def __neg__(self) -> "SymmetricTensor":
+        return negative(self)
+
+    def __mul__(self, factor: float) -> "SymmetricTensor":  # type: ignore[override]
+        return scaled(self, _checked_number(factor, "*"))
+
+    def __rmul__(self, factor: float) -> "SymmetricTensor":  # type: ignore[override]
+        return scaled(self, _checked_number(factor, "*"))
+
+    def __truediv__(self, divisor: float) -> "SymmetricTensor":
+        return divided(self, _checked_number(divisor, "/"))
+
+
+# Above that of NumPy's numbers, with which a product is a tensor, and below that of its arrays.
+SymmetricTensor.__array_priority__ = -1.0  # type: ignore[attr-defined]
+
+
+def _checked(operand: Any, sign: str) -> SymmetricTensor:
+    if isinstance(operand, SymmetricTensor):
+        return operand
+    raise TypeError(f"SymmetricTensor {sign} {type(operand).__name__}: only another SymmetricTensor can stand there")
+
+
+def _checked_number(operand: Any, sign: str) -> Any:
+    if isinstance(operand, float | int | Real):
+        return operand
+    raise TypeError(f"SymmetricTensor {sign} {type(operand).__name__}: only a number can stand there")
 
 
 @pointwise
@@ -40,6 +84,26 @@ def scaled(a: SymmetricTensor, factor: float) -> SymmetricTensor:
 def added(a: SymmetricTensor, b: SymmetricTensor) -> SymmetricTensor:
     """A + b."""
     return SymmetricTensor(a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.yz + b.yz, a.xz + b.xz)
+
+
+@pointwise
+def difference(a: SymmetricTensor, b: SymmetricTensor) -> SymmetricTensor:
+    """A - b."""
+    return SymmetricTensor(a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.xy - b.xy, a.yz - b.yz, a.xz - b.xz)
+
+
+@pointwise
+def negative(a: SymmetricTensor) -> SymmetricTensor:
+    """-a."""
+    return SymmetricTensor(-a.xx, -a.yy, -a.zz, -a.xy, -a.yz, -a.xz)
+
+
+@pointwise
+def divided(a: SymmetricTensor, divisor: float) -> SymmetricTensor:
+    """A over a number."""
+    return SymmetricTensor(
+        a.xx / divisor, a.yy / divisor, a.zz / divisor, a.xy / divisor, a.yz / divisor, a.xz / divisor
+    )
 
 
 @pointwise
@@ -128,4 +192,4 @@ def volumetric_strain_rate(strain_rate: SymmetricTensor) -> float:
 @pointwise
 def assembled_stress(mean_pressure: float, deviatoric: SymmetricTensor) -> SymmetricTensor:
     """Sigma = -p 1 + s [Pa]."""
-    return added(isotropic(-mean_pressure), deviatoric)
+    return isotropic(-mean_pressure) + deviatoric

@@ -35,7 +35,6 @@ from grainlaw.materials import (
     ParameterSet,
     StateVariable,
     SymmetricTensor,
-    added,
     assembled_stress,
     deviator,
     energy_of_logarithmic_compression,
@@ -46,7 +45,6 @@ from grainlaw.materials import (
     isotropic,
     pointwise,
     pressure,
-    scaled,
     shear_modulus,
     strain_in_contact,
     volumetric_strain_rate,
@@ -104,7 +102,7 @@ def update(
 ) -> tuple[SymmetricTensor, State]:
     """Close an opened point, then the elastic trial step and the return to the cone or its apex."""
     strain = strain_in_contact(
-        volumetric_strain_rate(strain_rate) * dt, scaled(deviator(strain_rate), dt), state.opening_strain
+        volumetric_strain_rate(strain_rate) * dt, dt * deviator(strain_rate), state.opening_strain
     )
     if strain.opening_strain > 0.0:
         return stress, State(strain.opening_strain)
@@ -112,7 +110,7 @@ def update(
     bulk_modulus = parameters.bulk_modulus
     modulus = shear_modulus(bulk_modulus, parameters.poisson_ratio)
     trial_pressure = pressure(stress) + bulk_modulus * strain.compression
-    trial = added(deviator(stress), scaled(strain.shear, 2.0 * modulus))
+    trial = deviator(stress) + 2.0 * modulus * strain.shear
     trial_tau = half_norm(trial)
 
     cone = strength_of(parameters)
@@ -123,7 +121,7 @@ def update(
     tau = trial_tau - modulus * plastic_shear
     if tau > 0.0:
         new_pressure = trial_pressure + bulk_modulus * cone.dilatancy * plastic_shear
-        return assembled_stress(new_pressure, scaled(trial, tau / trial_tau)), State(0.0)
+        return assembled_stress(new_pressure, trial * (tau / trial_tau)), State(0.0)
 
     apex = -cone.cohesion / max(cone.friction, 1e-300)
     dilation = cone.dilatancy * trial_tau / modulus

@@ -14,7 +14,6 @@ from grainlaw.materials import (
     Parameter,
     ParameterSet,
     SymmetricTensor,
-    added,
     deviator,
     energy_of_logarithmic_compression,
     energy_of_shear,
@@ -22,7 +21,6 @@ from grainlaw.materials import (
     isotropic,
     longitudinal_wave_speed,
     pressure,
-    scaled,
     shear_modulus,
     trace,
 )
@@ -55,8 +53,7 @@ def update(
     """Hooke's law over one step."""
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
     volumetric = isotropic(parameters.bulk_modulus * dt * trace(strain_rate))
-    deviatoric = scaled(deviator(strain_rate), 2.0 * modulus * dt)
-    return added(stress, added(volumetric, deviatoric)), state
+    return stress + (volumetric + 2.0 * modulus * dt * deviator(strain_rate)), state
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

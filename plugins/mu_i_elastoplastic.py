@@ -31,7 +31,6 @@ from grainlaw.materials import (
     ParameterSet,
     StateVariable,
     SymmetricTensor,
-    added,
     assembled_stress,
     deviator,
     energy_of_logarithmic_compression,
@@ -41,7 +40,6 @@ from grainlaw.materials import (
     hookimpl,
     isotropic,
     pressure,
-    scaled,
     shear_modulus,
     stress_ratio,
 )
@@ -89,7 +87,7 @@ def update(
     new_pressure = parameters.bulk_modulus * math.log(density / state.critical_density)
 
     stiffness = 2.0 * shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio) * dt
-    trial = added(deviator(stress), scaled(deviator(strain_rate), stiffness))
+    trial = deviator(stress) + stiffness * deviator(strain_rate)
     trial_shear_stress = half_norm(trial)
     reference_rate = math.sqrt(new_pressure / parameters.grain_density) / parameters.grain_diameter
     factor = radial_return_factor(
@@ -100,7 +98,7 @@ def update(
         parameters.dynamic_friction,
         parameters.inertial_number_constant * reference_rate,
     )
-    return assembled_stress(new_pressure, scaled(trial, factor)), state
+    return assembled_stress(new_pressure, factor * trial), state
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

@@ -31,7 +31,6 @@ from grainlaw.materials import (
     ParameterSet,
     StateVariable,
     SymmetricTensor,
-    added,
     assembled_stress,
     deviator,
     energy_of_linear_compression,
@@ -40,7 +39,6 @@ from grainlaw.materials import (
     half_norm,
     hookimpl,
     pressure,
-    scaled,
     shear_modulus,
     stress_ratio,
 )
@@ -91,7 +89,7 @@ def update(
     new_pressure = max(0.0, parameters.bulk_modulus * (density / reference_density - 1.0))
 
     stiffness = 2.0 * shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio) * dt
-    trial = added(deviator(stress), scaled(deviator(strain_rate), stiffness))
+    trial = deviator(stress) + stiffness * deviator(strain_rate)
     trial_shear_stress = half_norm(trial)
     # where I = I_0; the factor before the root is the same for all points and computed once
     rate_at_unit_pressure = parameters.inertial_number_constant / (
@@ -106,7 +104,7 @@ def update(
         parameters.dynamic_friction,
         reference_rate,
     )
-    return assembled_stress(new_pressure, scaled(trial, factor if new_pressure > 0.0 else 0.0)), state
+    return assembled_stress(new_pressure, (factor if new_pressure > 0.0 else 0.0) * trial), state
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

@@ -33,7 +33,6 @@ from grainlaw.materials import (
     hookimpl,
     pointwise,
     pressure,
-    scaled,
     stress_ratio,
 )
 
@@ -84,7 +83,7 @@ def update(
     rate_tensor = deviator(strain_rate)
     rate = half_norm(rate_tensor)
 
-    return assembled_stress(p, scaled(rate_tensor, apparent_viscosity(p, rate, parameters))), state
+    return assembled_stress(p, apparent_viscosity(p, rate, parameters) * rate_tensor), state
 
 
 @pointwise

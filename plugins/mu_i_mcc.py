@@ -49,7 +49,6 @@ from grainlaw.materials import (
     longitudinal_wave_speed,
     pointwise,
     pressure,
-    scaled,
     shear_modulus,
     strain_in_contact,
     volumetric_strain_rate,
@@ -117,7 +116,7 @@ def update(
 ) -> tuple[SymmetricTensor, State]:
     """Close an opened point, then the step with its own inertial number, and opening."""
     strain = strain_in_contact(
-        volumetric_strain_rate(strain_rate) * dt, scaled(deviator(strain_rate), dt), state.opening_strain
+        volumetric_strain_rate(strain_rate) * dt, dt * deviator(strain_rate), state.opening_strain
     )
     if strain.opening_strain > 0.0:
         return isotropic(0.0), State(state.preconsolidation_pressure, strain.opening_strain, 0.0)
@@ -157,7 +156,7 @@ def small_step(
         max(start_pressure, smallest),
         deviator(stress),
         volumetric_strain_rate(strain_rate) * dt,
-        scaled(deviator(strain_rate), dt),
+        dt * deviator(strain_rate),
         state.preconsolidation_pressure,
         state.inertial_number,
         dt,

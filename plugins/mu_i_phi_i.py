@@ -40,7 +40,6 @@ from grainlaw.materials import (
     ParameterSet,
     StateVariable,
     SymmetricTensor,
-    added,
     assembled_stress,
     deviator,
     energy_of_linear_compression,
@@ -51,7 +50,6 @@ from grainlaw.materials import (
     isotropic,
     pointwise,
     pressure,
-    scaled,
     shear_modulus,
     stress_ratio,
 )
@@ -135,7 +133,7 @@ def update(
         return isotropic(0.0), State(state.jamming_solid_fraction, 0.0)
 
     stiffness = 2.0 * shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio) * dt
-    trial = added(deviator(stress), scaled(deviator(strain_rate), stiffness))
+    trial = deviator(stress) + stiffness * deviator(strain_rate)
     trial_shear_stress = half_norm(trial)
     increment = Increment(compression, solid_fraction, trial_shear_stress, stiffness, dt)
     flow = flow_of_step(increment, state.inertial_number, parameters)
@@ -145,7 +143,7 @@ def update(
     if flow.number == 0.0:
         return assembled_stress(flow.pressure, trial), State(state.jamming_solid_fraction, 0.0)
     factor = max(0.0, flow.shear_stress) / trial_shear_stress
-    return assembled_stress(flow.pressure, scaled(trial, factor)), State(jamming, flow.number)
+    return assembled_stress(flow.pressure, factor * trial), State(jamming, flow.number)
 
 
 @pointwise

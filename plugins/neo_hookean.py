@@ -21,7 +21,6 @@ from grainlaw.materials import (
     ParameterSet,
     StateVariable,
     SymmetricTensor,
-    added,
     congruent,
     determinant,
     deviator,
@@ -30,7 +29,6 @@ from grainlaw.materials import (
     isotropic,
     pointwise,
     pressure,
-    scaled,
     shear_modulus,
     trace,
 )
@@ -59,7 +57,7 @@ def left_cauchy_green(stress: SymmetricTensor, volume_ratio: float, parameters: 
     """The tensor b that belongs to a stress."""
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
     volumetric = (parameters.bulk_modulus - 2.0 / 3.0 * modulus) * math.log(volume_ratio)
-    return added(isotropic(1.0 - volumetric / modulus), scaled(stress, volume_ratio / modulus))
+    return isotropic(1.0 - volumetric / modulus) + volume_ratio / modulus * stress
 
 
 def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
@@ -86,13 +84,13 @@ def update(
 ) -> tuple[SymmetricTensor, State]:
     """Stretch b over one step and take the stress from it."""
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    strain = scaled(strain_rate, dt)
+    strain = dt * strain_rate
     one = isotropic(1.0)
-    stretch = added(one, added(strain, scaled(congruent(strain, one), 0.5)))
+    stretch = one + strain + 0.5 * congruent(strain, one)
     b = congruent(stretch, left_cauchy_green(stress, state.volume_ratio, parameters))
     volume_ratio = state.reference_density / density
     volumetric = (parameters.bulk_modulus - 2.0 / 3.0 * modulus) * math.log(volume_ratio)
-    new = scaled(added(scaled(b, modulus), isotropic(volumetric - modulus)), 1.0 / volume_ratio)
+    new = (modulus * b + isotropic(volumetric - modulus)) / volume_ratio
     return new, State(state.reference_density, volume_ratio)
 
 

@@ -30,7 +30,6 @@ from grainlaw.materials import (
     hookimpl,
     isotropic,
     pressure,
-    scaled,
 )
 
 
@@ -66,7 +65,7 @@ def update(
     compression = density / state.reference_density - 1.0
     if compression <= 0.0:
         return isotropic(0.0), state
-    viscous = scaled(deviator(strain_rate), 2.0 * parameters.viscosity)
+    viscous = 2.0 * parameters.viscosity * deviator(strain_rate)
     return assembled_stress(parameters.bulk_modulus * compression, viscous), state
 
 

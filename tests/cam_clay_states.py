@@ -2,7 +2,7 @@
 
 import math
 
-from grainlaw.materials import SymmetricTensor, half_norm, scaled
+from grainlaw.materials import SymmetricTensor, half_norm
 
 
 def random_deviator(rng, q):
@@ -10,7 +10,7 @@ def random_deviator(rng, q):
     direction = rng.normal(size=6)
     direction[:3] -= direction[:3].mean()
     s = SymmetricTensor(*direction)
-    return scaled(s, q / (math.sqrt(3.0) * half_norm(s)))
+    return q / (math.sqrt(3.0) * half_norm(s)) * s
 
 
 def random_strain(rng, size):

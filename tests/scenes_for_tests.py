@@ -127,7 +127,7 @@ PLUGIN = '''
 import math
 from typing import Annotated, NamedTuple
 
-from grainlaw.materials import Law, Parameter, SymmetricTensor, added, hookimpl, scaled, trace
+from grainlaw.materials import Law, Parameter, SymmetricTensor, hookimpl, trace
 
 
 class Parameters(NamedTuple):
@@ -143,7 +143,7 @@ def initial_state(stress, density, parameters):
 
 
 def update(stress, strain_rate, density, state, parameters, dt):
-    new = added(stress, scaled(strain_rate, parameters.stiffness * dt))
+    new = stress + parameters.stiffness * dt * strain_rate
     {update}
     return new, state
 

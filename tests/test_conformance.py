@@ -14,9 +14,15 @@ from grainlaw.materials.registry import Registry
 
 SOUND_LAW = (DOCS / "adding-a-law.md").read_text().partition("```python file=cemented_sand.py\n")[2].partition("```")[0]
 STRENGTH = "    strength = parameters.friction_coefficient * p + cohesion if p > 0.0 else 0.0\n"
-RETURNED = "    return assembled_stress(p, scaled(trial, shear_stress / max(trial_shear_stress, 1e-300))), new_state\n"
+FACTOR = "shear_stress / max(trial_shear_stress, 1e-300) * trial"
+RETURNED = f"    return assembled_stress(p, {FACTOR}), new_state\n"
 MISTAKES = {
-    "dissipation": (RETURNED, RETURNED.replace("scaled(trial, ", "scaled(deviator(strain_rate), -dt * modulus / ")),
+    "dissipation": (
+        RETURNED,
+        RETURNED.replace(
+            "shear_stress / max(trial_shear_stress, 1e-300) * trial", "-dt * modulus * deviator(strain_rate)"
+        ),
+    ),
     "sound speed": ("parameters.bulk_modulus + max(0.0, pressure(stress))", "0.1 * parameters.bulk_modulus"),
     "stored energy": ("return isotropic_part + energy_of_shear", "return isotropic_part + 1.1 * energy_of_shear"),
     "pure": (STRENGTH, STRENGTH + "    CALLS.append(p)\n    strength *= 1.0 + 1e-3 * len(CALLS)\n"),
@@ -25,7 +31,7 @@ MISTAKES = {
     "tension": ("p = max(0.0, parameters.bulk_modulus * compression)", "p = parameters.bulk_modulus * compression"),
     "units": ("cohesion if p > 0.0", "cohesion + 100.0 if p > 0.0"),
     "equilibrium": (STRENGTH, STRENGTH + "    p *= 1.0 + 1e-3\n"),
-    "convergence": (RETURNED, RETURNED.replace("scaled(trial, ", "scaled(trial, 0.999 * ")),
+    "convergence": (RETURNED, RETURNED.replace("shear_stress /", "0.999 * shear_stress /")),
     "bounds": (STRENGTH, STRENGTH + "    strength += math.sqrt(0.45 - parameters.poisson_ratio)\n"),
     "single": (STRENGTH, STRENGTH + "    strength += (1.0 + 1e-9 * p - 1.0) * 1e9\n"),
     "compiled": (STRENGTH, STRENGTH + "    strength = [strength, p][0] if isinstance(p, float) else eval('p')\n"),

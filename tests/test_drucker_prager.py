@@ -18,7 +18,7 @@ from grainlaw.materials import (
 from grainlaw.materials.element.catalogue import get_element_test
 from grainlaw.materials.element.run import run_element_test
 from grainlaw.materials.element.specimen import prepared
-from grainlaw.materials.tensor import added, deviator, scaled
+from grainlaw.materials.tensor import deviator
 
 LAW = get_material("drucker_prager")
 BARS = LAW.parameter_sets["aluminium_bars"].parameters
@@ -51,7 +51,7 @@ def random_steps(count, seed):
         p = 10.0 ** random.uniform(0.0, 6.0)
         raw = SymmetricTensor(*(random.normal(size=6) * p * random.uniform(0.0, 0.3)).tolist())
         increment = SymmetricTensor(*(random.normal(size=6) * 10.0 ** random.uniform(-8.0, -1.0)).tolist())
-        yield added(isotropic(-p), deviator(raw)), increment
+        yield isotropic(-p) + deviator(raw), increment
 
 
 @pytest.mark.parametrize(("friction", "dilatancy", "cohesion"), [*ANGLES, (0.0, 0.0, 1000.0)])
@@ -67,11 +67,9 @@ def test_no_step_leaves_the_cone_or_gives_out_energy(friction, dilatancy, cohesi
         )
         scale = abs(pressure(stress)) + half_norm(deviator(stress)) + pressure(start) + intercept
         assert half_norm(deviator(stress)) - slope * pressure(stress) - intercept <= 1e-9 * scale
-        elastic = added(
-            scaled(deviator(added(stress, scaled(start, -1.0))), compliance),
-            isotropic((pressure(start) - pressure(stress)) / (3.0 * stiffness)),
-        )
-        plastic = added(increment, scaled(elastic, -1.0))
+        volume = (pressure(start) - pressure(stress)) / (3.0 * stiffness)
+        elastic = compliance * deviator(stress - start) + isotropic(volume)
+        plastic = increment - elastic
         assert contraction(stress, plastic) >= -1e-14 * scale * scale / stiffness
         assert state.opening_strain <= max(0.0, trace(plastic)) + 1e-14 * (1.0 + scale / stiffness)
 
@@ -84,9 +82,9 @@ def test_tension_ends_at_the_apex_and_comes_back_where_it_opened():
     stress, state = LAW.update(stress, opening, 2650.0, state, parameters, 1.0)
     assert pressure(stress) == pytest.approx(-tension, rel=1e-12)
     assert state.opening_strain == pytest.approx(0.05 - tension / parameters.bulk_modulus, rel=1e-12)
-    half_closed, state = LAW.update(stress, scaled(opening, -0.5), 2650.0, state, parameters, 1.0)
+    half_closed, state = LAW.update(stress, -0.5 * opening, 2650.0, state, parameters, 1.0)
     assert half_closed == stress
-    stress, state = LAW.update(half_closed, scaled(opening, -0.5), 2650.0, state, parameters, 1.0)
+    stress, state = LAW.update(half_closed, -0.5 * opening, 2650.0, state, parameters, 1.0)
     assert pressure(stress) == pytest.approx(0.0, abs=1e-9 * tension)
     assert state.opening_strain == 0.0
 

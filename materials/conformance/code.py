@@ -11,7 +11,7 @@ from unittest import mock
 import numpy as np
 from numba import njit, typeof, types
 
-from grainlaw.materials import SymmetricTensor, isotropic, scaled
+from grainlaw.materials import SymmetricTensor, isotropic
 from grainlaw.materials.compilation import PointwiseLaw, explained, make_single_step, named, pointwise_law
 from grainlaw.materials.conformance.outcome import Outcome, judged
 from grainlaw.materials.conformance.subject import DT, PointState, Subject, flowing_strain_rates
@@ -39,7 +39,7 @@ def finite(subject: Subject) -> Outcome:
         for name, direction in DIRECTIONS.items():
             for size in (1e-9, 1e-4, 1e-2):
                 try:
-                    end = subject.moved(start, scaled(direction, size / DT))
+                    end = subject.moved(start, size / DT * direction)
                 except ArithmeticError as error:
                     return Outcome("FAIL", f"{type(error).__name__} {where}, {name} of {size:g}: {error}")
                 if not _is_finite(subject, end):
@@ -155,7 +155,7 @@ def _make_repeat(law: PointwiseLaw) -> Any:
 def _strained(subject: Subject, direction: str, strain: float, start: PointState | None = None) -> PointState:
     point = start or subject.at_rest(subject.pressure)
     for _ in range(100):
-        point = subject.moved(point, scaled(DIRECTIONS[direction], 0.01 * strain / DT))
+        point = subject.moved(point, 0.01 * strain / DT * DIRECTIONS[direction])
     return point
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grainlaw.materials import Parameter, SymmetricTensor, scaled
+from grainlaw.materials import Parameter, SymmetricTensor
 from grainlaw.materials.conformance.outcome import Outcome
 from grainlaw.materials.conformance.subject import DT, PointState, Subject, largest_difference, random_strain_rates
 from grainlaw.materials.law import check_law
@@ -54,7 +54,7 @@ def units(subject: Subject) -> Outcome:
 
     def converted(point: PointState) -> PointState:
         state = law.state(*(value * k for value, k in zip(point.state, of_state, strict=True)))
-        return PointState(scaled(point.stress, BASE["Pa"]), point.density * factor("kg/m3"), state)
+        return PointState(BASE["Pa"] * point.stress, point.density * factor("kg/m3"), state)
 
     worst, what = 0.0, ""
     start = subject.at_rest(subject.pressure)
@@ -63,7 +63,7 @@ def units(subject: Subject) -> Outcome:
     differences = [("initial_state", made, other_start.state, 0.0)]
     for call in subject.calls:
         begin, end = converted(call.start), converted(call.end)
-        rate = scaled(call.strain_rate, factor("1/s"))
+        rate = factor("1/s") * call.strain_rate
         stress, state = law.update(begin.stress, rate, end.density, begin.state, parameters, call.dt * TIME)
         speed = law.sound_speed(*end, parameters)
         expected = law.sound_speed(*call.end, subject.parameters) * factor("m/s")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from grainlaw.materials import SymmetricTensor, added, half_norm, isotropic, pressure, scaled
+from grainlaw.materials import SymmetricTensor, half_norm, isotropic, pressure
 from grainlaw.materials.conformance.outcome import Outcome, judged
 from grainlaw.materials.conformance.subject import DT, PointState, Subject, largest_difference
 
@@ -71,7 +71,7 @@ def tension(subject: Subject) -> Outcome:
     for direction in (isotropic(1.0), SymmetricTensor(0.0, 1.0, 0.0, 0.0, 0.0, 0.0)):
         point = subject.at_rest(subject.pressure)
         for _ in range(100):
-            point = subject.moved(point, scaled(direction, 1e-3 / DT))
+            point = subject.moved(point, 1e-3 / DT * direction)
             lowest = min(lowest, pressure(point.stress))
     if subject.law.carries_tension:
         return Outcome("pass", f"declared: carries tension (found: {max(0.0, -lowest):.3g} Pa)")
@@ -229,7 +229,7 @@ def _after_strain(
     """The stress as a function of a small strain within a step."""
 
     def stress(strain: SymmetricTensor) -> SymmetricTensor:
-        point = subject.moved(state, scaled(strain, 1.0 / dt), dt)
+        point = subject.moved(state, strain / dt, dt)
         return point.stress if subject.law.viscosity is None else subject.moved(point, rate, dt).stress
 
     return stress
@@ -241,7 +241,7 @@ def _after_rate(
     """The stress as a function of a small change of the rate, in a step too short for any strain."""
 
     def stress(change: SymmetricTensor) -> SymmetricTensor:
-        return subject.moved(state, added(rate, change), SHORTEST_STEP).stress
+        return subject.moved(state, rate + change, SHORTEST_STEP).stress
 
     return stress
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from grainlaw.materials import Law, ParameterSet, SymmetricTensor, contraction, isotropic, scaled, trace
+from grainlaw.materials import Law, ParameterSet, SymmetricTensor, contraction, isotropic, trace
 
 Array = NDArray[np.float64]
 
@@ -98,7 +98,7 @@ class Subject:
         reference = point.density
         for increment in increments:
             strain = SymmetricTensor(*increment.tolist())
-            end = self.moved(point, scaled(strain, 1.0 / dt), dt)
+            end = self.moved(point, strain / dt, dt)
             mean = 0.5 * (
                 contraction(point.stress, strain) / point.density + contraction(end.stress, strain) / end.density
             )

@@ -20,7 +20,7 @@ from grainlaw.materials.element.point import Point
 from grainlaw.materials.element.search import narrowed, search_from
 from grainlaw.materials.element.specimen import Specimen
 from grainlaw.materials.errors import SimulationError
-from grainlaw.materials.tensor import added, contraction, scaled, trace
+from grainlaw.materials.tensor import contraction, trace
 
 # Relative to the target: 1e-7 Pa at 1000 Pa, still far above the round-off of a law that is stiff in the density.
 CONTROL_TOLERANCE = 1e-10
@@ -49,10 +49,10 @@ def make_advance(law: PointwiseLaw) -> Any:
         is_controlled = contraction(free, free) > 0.0
         tolerance = CONTROL_TOLERANCE * abs(target)
         for step in range(rates.size):
-            prescribed = scaled(direction, rates[step])
+            prescribed = rates[step] * direction
             search = search_from(point.search.x, point.search.slope, FIRST_REACH * abs(rates[step]))
             for _ in range(MAXIMUM_ITERATIONS):
-                strain_rate = added(prescribed, scaled(free, search.x))
+                strain_rate = prescribed + search.x * free
                 density = point.density * math.exp(-trace(strain_rate) * dt)
                 stress, state = update(point.stress, strain_rate, density, point.state, parameters, dt)
                 residual = contraction(held, stress) - target
@@ -61,7 +61,7 @@ def make_advance(law: PointwiseLaw) -> Any:
                 search = narrowed(search, residual)
             if is_controlled and not abs(residual) <= tolerance:
                 return point, step
-            strain = added(point.strain, scaled(strain_rate, dt))
+            strain = point.strain + dt * strain_rate
             point = Point(point.time, stress, strain, strain_rate, density, state, search)
         return point, rates.size
 

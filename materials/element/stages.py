@@ -16,7 +16,7 @@ from grainlaw.materials.element.path import steps_of
 from grainlaw.materials.element.point import Point
 from grainlaw.materials.element.specimen import Specimen
 from grainlaw.materials.errors import SimulationError
-from grainlaw.materials.tensor import SymmetricTensor, added, scaled, trace
+from grainlaw.materials.tensor import SymmetricTensor, trace
 
 # Relative to the largest initial or prescribed stress component.
 STRESS_TOLERANCE = 1e-8
@@ -87,7 +87,7 @@ class StageSolver:
         stress, state = explained(
             self.law, self.single_step, point.stress, strain_rate, density, point.state, self.parameters, self.dt
         )
-        strain = added(point.strain, scaled(strain_rate, self.dt))
+        strain = point.strain + self.dt * strain_rate
         return Point(point.time, stress, strain, strain_rate, density, state, point.search)
 
     def _rate_scale(self, stage: Stage) -> float:

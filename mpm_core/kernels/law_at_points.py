@@ -14,7 +14,7 @@ from numba.extending import register_jitable
 from grainlaw.materials.compilation import PointwiseLaw, named
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.materials.single_precision import adaptable, in_precision
-from grainlaw.materials.tensor import SymmetricTensor, added, isotropic
+from grainlaw.materials.tensor import SymmetricTensor, isotropic
 from grainlaw.mpm_core.kernels.simd.loop import loop_over_points
 from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ, VX, VY
 
@@ -135,7 +135,7 @@ def point_access(precision: str) -> PointAccess:
     def strain_rate_at(rows, p, tie, dt):  # type: ignore[no-untyped-def]
         shear = 0.5 * (number(rows[LXY][p]) + number(rows[LYX][p]))
         motion = SymmetricTensor(number(rows[LXX][p]), number(rows[LYY][p]), nothing, shear, nothing, nothing)
-        return added(motion, isotropic(number(tie) * (-1.0 / (3.0 * dt))))
+        return motion + isotropic(number(tie) * (-1.0 / (3.0 * dt)))
 
     return PointAccess(stress_at, in_precision(strain_rate_at, precision))
 

@@ -20,7 +20,6 @@ from grainlaw.materials import (
     half_norm,
     inertial_number,
     pointwise,
-    scaled,
     shear_modulus,
 )
 from grainlaw.plugins.cam_clay.rate_dependent import (
@@ -128,7 +127,7 @@ def substepped(increment: Increment, parts: int, guess: float, constants: Flowin
     start = CamClayStep(increment.start_pressure, increment.size_at_rest, increment.start_deviator, 0.0, 0.0)
     flow, is_consistent = Flow(start, increment.size_at_rest, 0.0, guess, 0.0, 0.0), True
     largest_mismatch = LARGEST_MISMATCH * sensitive_inertial_number(constants)
-    compression, shear, dt = increment.compression / parts, scaled(increment.shear, 1.0 / parts), increment.dt / parts
+    compression, shear, dt = increment.compression / parts, increment.shear * (1.0 / parts), increment.dt / parts
     for _ in range(parts):
         part = Increment(flow.end.mean_pressure, flow.end.deviator, compression, shear, flow.size_at_rest, dt)
         flow = consistent_flow(part, flow.found, constants)

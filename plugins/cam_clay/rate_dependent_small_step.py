@@ -18,7 +18,7 @@ takes. Where it is not, the result says so, and `flowing_cam_clay_step` has to b
 import math
 from typing import NamedTuple
 
-from grainlaw.materials import SymmetricTensor, added, pointwise, scaled, shear_modulus
+from grainlaw.materials import SymmetricTensor, pointwise, shear_modulus
 from grainlaw.materials.elementary import fused
 from grainlaw.plugins.cam_clay.rate_dependent import (
     FlowingCamClay,
@@ -118,7 +118,7 @@ def flowing_cam_clay_small_step(
     ratio_at_rest = last.ratio_at_rest if yields else elastic.ratio_at_rest
     ratio = last.ratio if yields else elastic.ratio
     p = start_pressure / inverse_growth
-    s = scaled(added(start_deviator, scaled(sheared, p * mean)), inverse_grown)
+    s = inverse_grown * (start_deviator + p * mean * sheared)
     succeeded = is_short(elastic, constants) and (not yields or (is_root(last) and is_short(last, constants)))
     return SmallFlowingStep(p, ratio_at_rest * p, s, last.inertial_number if yields else 0.0, ratio, succeeded)
 

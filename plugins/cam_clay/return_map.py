@@ -18,13 +18,11 @@ from typing import NamedTuple
 
 from grainlaw.materials import (
     SymmetricTensor,
-    added,
     contraction,
     energy_of_shear,
     half_norm,
     pointwise,
     pressure,
-    scaled,
     shear_modulus,
 )
 from grainlaw.materials.elementary import (
@@ -126,13 +124,13 @@ def cam_clay_step(
     modulus = shear_modulus(
         p * mean_over_path(growth, inverse_growth) / constants.swelling_index, constants.poisson_ratio
     )
-    s = added(start_deviator, scaled(shear, 2.0 * modulus))
+    s = start_deviator + 2.0 * modulus * shear
     m = constants.critical_state_ratio
     if 1.5 * contraction(s, s) / (m * m) <= p * (preconsolidation_pressure - p):
         return CamClayStep(p, preconsolidation_pressure, s, 0.0, 0.0)
     trial = elastic_trial(start_pressure, start_deviator, compression, shear, preconsolidation_pressure, constants)
     new = return_to_yield_surface(trial, constants, expected)
-    s = scaled(added(start_deviator, scaled(shear, 2.0 * new.modulus)), 1.0 / (1.0 + new.relaxation))
+    s = (start_deviator + 2.0 * new.modulus * shear) * (1.0 / (1.0 + new.relaxation))
     plastic_shear = 0.5 * half_norm(s) * new.relaxation / new.modulus
     plastic_compression = compression - constants.swelling_index * log_ratio(new.mean_pressure, start_pressure)
     return CamClayStep(new.mean_pressure, new.preconsolidation_pressure, s, plastic_shear, plastic_compression)
@@ -158,7 +156,7 @@ def elastic_trial(
     inverse_growth = exponential(-growth)
     log_pressure_ratio = math.log(2.0 * start_pressure / preconsolidation_pressure) + growth
     critical_ratio = 0.5 * preconsolidation_pressure * inverse_growth / start_pressure
-    start_ratio = scaled(start_deviator, 1.0 / start_pressure)
+    start_ratio = start_deviator * (1.0 / start_pressure)
     return Trial(start_pressure, start_ratio, shear, growth, inverse_growth, log_pressure_ratio, critical_ratio)
 
 
@@ -229,8 +227,8 @@ def yield_state(theta: float, trial: Trial, constants: CamClay) -> YieldState:
     w = 2.0 * critical_ratio - 1.0
 
     mean_modulus = stiffness * mean_over_path(log_growth, inverse_growth)
-    at_start, sheared = scaled(trial.start_ratio, inverse_growth), scaled(trial.shear, 2.0 * mean_modulus)
-    s = added(at_start, sheared)
+    at_start, sheared = inverse_growth * trial.start_ratio, 2.0 * mean_modulus * trial.shear
+    s = at_start + sheared
     trial_squared = 1.5 / m_squared * contraction(s, s)
     slope = 3.0 / (total_slope(constants) * m_squared) * mean_modulus / mean_over_path(z, critical_ratio)
     n = slope * (1.0 - theta) / theta
@@ -238,7 +236,7 @@ def yield_state(theta: float, trial: Trial, constants: CamClay) -> YieldState:
     dz = -z * theta
     dlog_p = elastic_share * dz
     dlog_mean = log_derivative_of_mean(log_growth, inverse_growth)
-    ds = added(scaled(at_start, -1.0), scaled(sheared, dlog_mean))
+    ds = dlog_mean * sheared - at_start
     dtrial_squared = 3.0 / m_squared * contraction(s, ds) * dlog_p
     dn = slope + n * (dlog_mean * dlog_p - log_derivative_of_mean(z, critical_ratio) * dz)
     dw = -(w + 1.0) * dz

@@ -13,7 +13,7 @@ bracketed return has to be called.
 
 from typing import NamedTuple
 
-from grainlaw.materials import SymmetricTensor, added, contraction, pointwise, scaled, shear_modulus
+from grainlaw.materials import SymmetricTensor, contraction, pointwise, shear_modulus
 from grainlaw.materials.elementary import fused
 from grainlaw.plugins.cam_clay.return_map import TOLERANCE, CamClay, total_slope
 
@@ -86,7 +86,7 @@ def cam_clay_small_step(
     mean = last.mean if yields else elastic.mean
     ratio = last.ratio if yields else trial.ratio
     p = start_pressure / end_inverse_growth
-    s = scaled(added(start_deviator, scaled(sheared, p * mean)), 1.0 / (1.0 + relaxation))
+    s = (start_deviator + p * mean * sheared) * (1.0 / (1.0 + relaxation))
     error = max(abs(last.of_yield) - TOLERANCE * last.ratio, abs(last.of_flow) - STRAIN_TOLERANCE)
     exponent = max(abs(last.growth), abs(last.plastic_compression) * total_slope(constants))
     is_root = error <= 0.0 and exponent <= LARGEST_EXPONENT and last.relaxation >= 0.0
@@ -109,8 +109,8 @@ def trial_invariants(
     inverse_pressure = 1.0 / start_pressure
     growth = compression * inverse_swelling_index(constants)
     inverse_growth = exponential_series(-growth)
-    at_start = scaled(start_deviator, inverse_pressure)
-    sheared = scaled(shear, 2.0 * stiffness)
+    at_start = inverse_pressure * start_deviator
+    sheared = 2.0 * stiffness * shear
     trial = TrialInvariants(
         growth,
         inverse_growth,

@@ -19,13 +19,11 @@ from grainlaw.materials import (
     ParameterSet,
     StateVariable,
     SymmetricTensor,
-    added,
     assembled_stress,
     deviator,
     flowing_wave_speed,
     hookimpl,
     pressure,
-    scaled,
     shear_modulus,
 )
 
@@ -66,9 +64,9 @@ def update(
     p = max(0.0, parameters.bulk_modulus * (solid_fraction / state.reference_solid_fraction - 1.0))
 
     modulus = shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio)
-    trial = added(deviator(stress), scaled(deviator(strain_rate), 2.0 * modulus * dt))
+    trial = deviator(stress) + 2.0 * modulus * dt * deviator(strain_rate)
     factor = 1.0 if p > 0.0 else 0.0
-    return assembled_stress(p, scaled(trial, factor)), state
+    return assembled_stress(p, factor * trial), state
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
