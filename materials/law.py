@@ -68,8 +68,8 @@ class Law:
                     cells of h. Since hook version 2
     stored_energy   (stress, density, state, parameters) -> elastic energy per mass [J/kg], zero without stress; with it
                     the ledger of a run tells elastic from dissipated work; None if the law does not know it (version 2)
-    at_bound        (stress, density, state, parameters) -> whether the law holds the point at a bound of its own, such
-                    as a smallest yield surface; a run counts such points and says so; None if it never does (version 2)
+    lower_bounds    by the names of state variables that the law does not let fall lower, such as the size of a yield
+                    surface: (parameters) -> the smallest value; a run counts the points there and says so (version 2)
     small_step      like `update`, but -> (stress, state, succeeded): a shorter way without loops, for steps as small as
                     the core takes, that the compiler can take for many points at once; where it says that it has not
                     succeeded, `update` is called. None for a law whose `update` is that short itself (version 2)
@@ -96,7 +96,7 @@ class Law:
     hook_version: int = HOOK_VERSION
     viscosity: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any], float] | None = None
     stored_energy: Callable[[SymmetricTensor, float, Any, Any], float] | None = None
-    at_bound: Callable[[SymmetricTensor, float, Any, Any], bool] | None = None
+    lower_bounds: Mapping[str, Callable[[Any], float]] = field(default_factory=dict)
     small_step: (
         Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any, float], tuple[SymmetricTensor, Any, bool]] | None
     ) = None
@@ -143,7 +143,9 @@ def check_law(law: Law) -> None:
     if not law.summary.strip():
         raise DeclarationError("no summary")
     declared_fields(law.parameters, Parameter)
-    declared_fields(law.state, StateVariable)
+    for name in law.lower_bounds:
+        if name not in declared_fields(law.state, StateVariable):
+            raise DeclarationError(f"lower_bounds names '{name}', which is no state variable")
     for name, parameter_set in law.parameter_sets.items():
         _check_one_step(law, name, parameter_set)
 
@@ -159,7 +161,7 @@ def _check_hook_version(law: Law) -> None:
         raise DeclarationError(
             f"written for hook version {written_for}; {understood}: the law has to be brought up to date"
         )
-    for name in ("small_step", "stored_energy", "at_bound", "viscosity", "holds_in_single"):
+    for name in ("small_step", "stored_energy", "lower_bounds", "viscosity", "holds_in_single"):
         if getattr(law, name) and written_for < STATEMENTS_VERSION:
             raise DeclarationError(
                 f"{name} belongs to hook version {STATEMENTS_VERSION}; the law says hook_version={written_for}"

@@ -13,8 +13,13 @@ Over a step, p and p_c follow their exponential laws exactly; the return to F = 
 Grains carry no tension. Where the pressure would fall below `stress_free_pressure` the point opens: its stress is zero
 and `opening_strain` keeps the volumetric strain since, so that pressure returns only when the point has closed.
 
-Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", Eqs. 7-10, Table 1; MCC
-after Roscoe & Burland (1968). kappa and lambda are slopes in ln v - ln p.
+Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", EPJ
+Web of Conferences 340, 02014 (2025), doi 10.1051/epjconf/202534002014, Eqs. 7-10, Table 1;
+MCC after Roscoe & Burland (1968).
+Indices: kappa and lambda are slopes in ln v - ln p; `plugins/cam_clay/indices.py` converts those of e - ln p, which are
+to be divided by 1 + e.
+In a scene the body needs an `initial_stress`: p_c is OCR times the surface through it, and the stiffness grows with p.
+Without one, points start at the edge of contact, where they have none.
 Conventions: tensors tension-positive; p, eps_v compression-positive; q = sqrt(3/2 s:s).
 Valid for quasi-static deformation: the law knows no rate.
 """
@@ -42,7 +47,7 @@ from grainlaw.materials import (
 )
 from grainlaw.plugins.cam_clay.resolutions import MODIFIED_CAM_CLAY
 from grainlaw.plugins.cam_clay.return_map import CamClay, cam_clay_step, energy_of_cam_clay, log_volume_of_figure_1
-from grainlaw.plugins.cam_clay.small_step import cam_clay_small_step
+from grainlaw.plugins.cam_clay.small_step import small_step_of
 
 
 class Parameters(NamedTuple):
@@ -79,7 +84,7 @@ def initial_state(stress: SymmetricTensor, density: float, parameters: Parameter
     q = deviatoric_stress(stress)
     m = parameters.critical_state_ratio
     through_stress = p + q * q / (m * m * p)
-    return State(parameters.overconsolidation_ratio * max(through_stress, 2.0 * parameters.stress_free_pressure), 0.0)
+    return State(parameters.overconsolidation_ratio * max(through_stress, smallest_yield_surface(parameters)), 0.0)
 
 
 def update(
@@ -107,35 +112,11 @@ def update(
         0.0,
     )
     smallest = parameters.stress_free_pressure
-    preconsolidation_pressure = max(new.preconsolidation_pressure, 2.0 * smallest)
+    preconsolidation_pressure = max(new.preconsolidation_pressure, smallest_yield_surface(parameters))
     if new.mean_pressure < smallest:
         opening_strain = parameters.swelling_index * math.log(smallest / new.mean_pressure)
         return isotropic(0.0), State(preconsolidation_pressure, opening_strain)
     return assembled_stress(new.mean_pressure, new.deviator), State(preconsolidation_pressure, 0.0)
-
-
-def small_step(
-    stress: SymmetricTensor,
-    strain_rate: SymmetricTensor,
-    density: float,
-    state: State,
-    parameters: Parameters,
-    dt: float,
-) -> tuple[SymmetricTensor, State, bool]:
-    """The same for a small step of a point that is in contact and stays so."""
-    smallest = parameters.stress_free_pressure
-    start_pressure = pressure(stress)
-    new = cam_clay_small_step(
-        max(start_pressure, smallest),
-        deviator(stress),
-        volumetric_strain_rate(strain_rate) * dt,
-        dt * deviator(strain_rate),
-        state.preconsolidation_pressure,
-        constants_of(parameters),
-    )
-    in_contact = min(start_pressure, new.mean_pressure, 0.5 * new.preconsolidation_pressure) >= smallest
-    succeeded = new.succeeded and in_contact and state.opening_strain == 0.0
-    return assembled_stress(new.mean_pressure, new.deviator), State(new.preconsolidation_pressure, 0.0), succeeded
 
 
 @pointwise
@@ -151,8 +132,7 @@ def constants_of(parameters: Parameters) -> CamClay:
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
     """Speed of longitudinal elastic waves at the present pressure; zero where the point is open."""
-    # 1/kappa is the same for all points, and a product takes a third of the time of a division.
-    bulk_modulus = max(0.0, pressure(stress)) * (1.0 / parameters.swelling_index)
+    bulk_modulus = max(0.0, pressure(stress)) / parameters.swelling_index
     return longitudinal_wave_speed(bulk_modulus, shear_modulus(bulk_modulus, parameters.poisson_ratio), density)
 
 
@@ -163,9 +143,10 @@ def stored_energy(stress: SymmetricTensor, density: float, state: State, paramet
     )
 
 
-def at_bound(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> bool:
-    """The smallest yield surface, 2 `stress_free_pressure`."""
-    return state.preconsolidation_pressure <= 2.0 * parameters.stress_free_pressure
+@pointwise
+def smallest_yield_surface(parameters: Parameters) -> float:
+    """2 `stress_free_pressure`, where the critical state is at the edge of contact."""
+    return 2.0 * parameters.stress_free_pressure
 
 
 def inconsistency(parameters: Parameters) -> str:
@@ -203,9 +184,9 @@ LAW = Law(
     update=update,
     sound_speed=sound_speed,
     stored_energy=stored_energy,
-    at_bound=at_bound,
+    lower_bounds={"preconsolidation_pressure": smallest_yield_surface},
     inconsistency=inconsistency,
-    small_step=small_step,
+    small_step=small_step_of(State, constants_of),
     parameter_sets={
         "paper": ParameterSet(PAPER, "Table 1, OCR = 1", density_on_compression_line),
         "paper_ocr4": ParameterSet(

@@ -15,7 +15,8 @@ Over a step dt, with the trial stress tau_trial = |s + 2 G dt D_d|, the plastic 
 
 a quadratic in x, solved in closed form (backward Euler).
 
-Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", Eqs. 1-6, Table 1.
+Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", EPJ
+Web of Conferences 340, 02014 (2025), doi 10.1051/epjconf/202534002014, Eqs. 1-6, Table 1.
 Conventions: tensors tension-positive, p compression-positive; tau = sqrt(1/2 s:s), gamma_dot = sqrt(1/2 D_d:D_d), so
 I_0 belongs to half of the engineering rate (`own_inertial_number_constant` converts a literature value).
 phi_ref follows for each point from its initial pressure and density, so that the initial state is in equilibrium.
@@ -91,18 +92,14 @@ def update(
     stiffness = 2.0 * shear_modulus(parameters.bulk_modulus, parameters.poisson_ratio) * dt
     trial = deviator(stress) + stiffness * deviator(strain_rate)
     trial_shear_stress = half_norm(trial)
-    # where I = I_0; the factor before the root is the same for all points and computed once
-    rate_at_unit_pressure = parameters.inertial_number_constant / (
-        parameters.grain_diameter * math.sqrt(parameters.grain_density)
-    )
-    reference_rate = rate_at_unit_pressure * math.sqrt(new_pressure)
+    reference_rate = math.sqrt(new_pressure / parameters.grain_density) / parameters.grain_diameter
     factor = radial_return_factor(
         trial_shear_stress,
         new_pressure,
         stiffness,
         parameters.static_friction,
         parameters.dynamic_friction,
-        reference_rate,
+        parameters.inertial_number_constant * reference_rate,
     )
     return assembled_stress(new_pressure, (factor if new_pressure > 0.0 else 0.0) * trial), state
 

@@ -12,7 +12,8 @@ of h, and near rest eta ~ mu_0 p/alpha: far below any step that a run can afford
 chatters between the signs of the yield stress and a pile creeps for ever: this law is here to be compared with,
 `mu_i_lc` is the one to use.
 
-Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", Eqs. 1-6, Table 1;
+Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", EPJ
+Web of Conferences 340, 02014 (2025), doi 10.1051/epjconf/202534002014, Eqs. 1-6, Table 1;
 regularisation after Franci & Cremonesi (2019).
 Conventions and range of validity: as `mu_i_lc`.
 """

@@ -20,13 +20,13 @@ A change of the shear rate moves the surface at once, p_c0 only as volume change
 Dissipation is (p (2p - p_c) + 2 q^2/M^2) dLambda = p p_c dLambda >= 0.
 
 A step. I is the plastic inertial number of the step, with p at its end, found together with the return to (1) between
-brackets (`plugins/cam_clay/rate_dependent_return_map.py`), for small steps by a fixed number of iterations
-(`plugins/cam_clay/rate_dependent_small_step.py`); (2) and (7) are in `plugins/cam_clay/rate_dependent.py`.
+brackets (`plugins/cam_clay/rate_dependent_return_map.py`); (2) and (7) are in `plugins/cam_clay/rate_dependent.py`.
 
 Grains carry no tension: opened points keep an opening strain, as in `modified_cam_clay`.
 
 Source: (1)-(4) as published with the HydraxMPM code, Lubbe et al. (2026), and the idea of mu(I)-MCC in Blatny et al.
 (2024); flow rule, (7) and integration are this project's.
+Indices and `initial_stress`: as `modified_cam_clay`.
 Conventions: tensors tension-positive; p, eps_v compression-positive; q = sqrt(3/2 s:s); gamma_dot = sqrt(1/2 D_d:D_d),
 so I_M and I_v belong to half of the engineering rate (`own_inertial_number_constant` converts literature values).
 Valid from rest to dense flow, I below 1; beyond, collisions carry stress that (3) does not know.
@@ -55,7 +55,7 @@ from grainlaw.materials import (
 )
 from grainlaw.plugins.cam_clay.rate_dependent import FlowingCamClay, growth_of_surface
 from grainlaw.plugins.cam_clay.rate_dependent_return_map import flowing_cam_clay_step
-from grainlaw.plugins.cam_clay.rate_dependent_small_step import flowing_cam_clay_small_step
+from grainlaw.plugins.cam_clay.rate_dependent_small_step import small_flowing_step_of
 from grainlaw.plugins.cam_clay.return_map import energy_of_cam_clay, log_volume_of_figure_1
 from grainlaw.plugins.mu_i.friction import own_inertial_number_constant
 
@@ -102,7 +102,7 @@ def initial_state(stress: SymmetricTensor, density: float, parameters: Parameter
     """At rest: the yield surface through the initial stress, times OCR; without stress, at the edge of contact."""
     p = max(pressure(stress), parameters.stress_free_pressure)
     ratio = deviatoric_stress(stress) / (parameters.critical_state_ratio * p)
-    through_stress = max(p * (1.0 + ratio * ratio), 2.0 * parameters.stress_free_pressure)
+    through_stress = max(p * (1.0 + ratio * ratio), smallest_yield_surface(parameters))
     return State(parameters.overconsolidation_ratio * through_stress, 0.0, 0.0)
 
 
@@ -133,42 +133,12 @@ def update(
         dt,
         constants,
     )
-    smallest_size = 2.0 * smallest / growth_of_surface(step.surface_inertial_number, constants)
+    smallest_size = smallest_yield_surface(parameters) / growth_of_surface(step.surface_inertial_number, constants)
     size_at_rest = max(step.size_at_rest, smallest_size)
     if step.mean_pressure < smallest:
         opening_strain = parameters.swelling_index * math.log(smallest / step.mean_pressure)
         return isotropic(0.0), State(size_at_rest, opening_strain, 0.0)
     return assembled_stress(step.mean_pressure, step.deviator), State(size_at_rest, 0.0, step.inertial_number)
-
-
-def small_step(
-    stress: SymmetricTensor,
-    strain_rate: SymmetricTensor,
-    density: float,
-    state: State,
-    parameters: Parameters,
-    dt: float,
-) -> tuple[SymmetricTensor, State, bool]:
-    """The same for a small step of a point that is in contact and stays so."""
-    smallest = parameters.stress_free_pressure
-    start_pressure = pressure(stress)
-    new = flowing_cam_clay_small_step(
-        max(start_pressure, smallest),
-        deviator(stress),
-        volumetric_strain_rate(strain_rate) * dt,
-        dt * deviator(strain_rate),
-        state.preconsolidation_pressure,
-        state.inertial_number,
-        dt,
-        constants_of(parameters),
-    )
-    in_contact = min(start_pressure, new.mean_pressure, 0.5 * new.ratio * new.mean_pressure) >= smallest
-    succeeded = new.succeeded and in_contact and state.opening_strain == 0.0
-    return (
-        assembled_stress(new.mean_pressure, new.deviator),
-        State(new.size_at_rest, 0.0, new.inertial_number),
-        succeeded,
-    )
 
 
 @pointwise
@@ -189,8 +159,7 @@ def constants_of(parameters: Parameters) -> FlowingCamClay:
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:
     """Speed of longitudinal elastic waves at the present pressure; zero where the point is open."""
-    # 1/kappa is the same for all points, and a product takes a third of the time of a division.
-    bulk_modulus = max(0.0, pressure(stress)) * (1.0 / parameters.swelling_index)
+    bulk_modulus = max(0.0, pressure(stress)) / parameters.swelling_index
     return longitudinal_wave_speed(bulk_modulus, shear_modulus(bulk_modulus, parameters.poisson_ratio), density)
 
 
@@ -201,9 +170,10 @@ def stored_energy(stress: SymmetricTensor, density: float, state: State, paramet
     )
 
 
-def at_bound(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> bool:
-    """The smallest yield surface, 2 `stress_free_pressure`."""
-    return state.preconsolidation_pressure <= 2.0 * parameters.stress_free_pressure
+@pointwise
+def smallest_yield_surface(parameters: Parameters) -> float:
+    """2 `stress_free_pressure`, where the critical state is at the edge of contact."""
+    return 2.0 * parameters.stress_free_pressure
 
 
 def inconsistency(parameters: Parameters) -> str:
@@ -253,9 +223,9 @@ LAW = Law(
     update=update,
     sound_speed=sound_speed,
     stored_energy=stored_energy,
-    at_bound=at_bound,
+    lower_bounds={"preconsolidation_pressure": smallest_yield_surface},
     inconsistency=inconsistency,
-    small_step=small_step,
+    small_step=small_flowing_step_of(State, constants_of),
     parameter_sets={
         "paper": ParameterSet(PAPER, f"{SOURCE}; OCR = 1", density_on_compression_line),
         "paper_ocr4": ParameterSet(

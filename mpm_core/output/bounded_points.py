@@ -2,17 +2,16 @@
 
 - points without stress, which open and close freely (`stress`: points without contact),
 - points nearer to a wall than a twentieth of a cell, whose stiffness is bounded (`basis`),
-- points that their law holds at a bound of its own (`Law.at_bound`), as Cam Clay does with its smallest yield surface.
+- points that their law holds at a bound of its own (`Law.lower_bounds`), such as Cam Clay's smallest yield surface.
 
 Everything else that goes wrong stops a run.
 """
 
 import numpy as np
 
-from grainlaw.materials.tensor import SymmetricTensor
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.kernels.shape_functions import SMALLEST_MOMENT_AT_WALL
-from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, SZZ, X, Y
+from grainlaw.mpm_core.layout import X, Y
 from grainlaw.mpm_core.simulation import Simulation
 
 
@@ -39,12 +38,8 @@ def _at_walls(simulation: Simulation, body: Body) -> int:
 
 
 def _at_bounds(body: Body) -> int:
-    """In plain Python: it is asked for once in a run."""
-    law = body.law
-    if law.at_bound is None:
-        return 0
-    rows = np.vstack([body.points[[SXX, SYY, SZZ, SXY, DENSITY]], body.states])
-    return sum(
-        law.at_bound(SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0), density, law.state(*state), body.parameters)
-        for xx, yy, zz, xy, density, *state in rows.T.tolist()
-    )
+    at_bound = np.zeros(body.count, np.bool_)
+    for name, smallest in body.law.lower_bounds.items():
+        values = body.states[body.law.state._fields.index(name)]
+        at_bound |= values <= values.dtype.type(smallest(body.parameters))
+    return int(at_bound.sum())

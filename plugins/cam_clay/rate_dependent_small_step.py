@@ -16,9 +16,18 @@ takes. Where it is not, the result says so, and `flowing_cam_clay_step` has to b
 """
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
-from grainlaw.materials import SymmetricTensor, pointwise, shear_modulus
+from grainlaw.materials import (
+    SymmetricTensor,
+    assembled_stress,
+    deviator,
+    pointwise,
+    pressure,
+    shear_modulus,
+    volumetric_strain_rate,
+)
 from grainlaw.materials.elementary import fused
 from grainlaw.plugins.cam_clay.rate_dependent import (
     FlowingCamClay,
@@ -121,6 +130,37 @@ def flowing_cam_clay_small_step(
     s = inverse_grown * (start_deviator + p * mean * sheared)
     succeeded = is_short(elastic, constants) and (not yields or (is_root(last) and is_short(last, constants)))
     return SmallFlowingStep(p, ratio_at_rest * p, s, last.inertial_number if yields else 0.0, ratio, succeeded)
+
+
+def small_flowing_step_of(state_class: type[Any], constants_of: Callable[[Any], FlowingCamClay]) -> Callable[..., Any]:
+    """`Law.small_step` of mu(I)-MCC, for points that are in contact and stay so."""
+
+    def small_step(
+        stress: SymmetricTensor,
+        strain_rate: SymmetricTensor,
+        density: float,
+        state: Any,
+        parameters: Any,
+        dt: float,
+    ) -> tuple[SymmetricTensor, Any, bool]:
+        smallest = parameters.stress_free_pressure
+        start_pressure = pressure(stress)
+        new = flowing_cam_clay_small_step(
+            max(start_pressure, smallest),
+            deviator(stress),
+            volumetric_strain_rate(strain_rate) * dt,
+            dt * deviator(strain_rate),
+            state.preconsolidation_pressure,
+            state.inertial_number,
+            dt,
+            constants_of(parameters),
+        )
+        in_contact = min(start_pressure, new.mean_pressure, 0.5 * new.ratio * new.mean_pressure) >= smallest
+        succeeded = new.succeeded and in_contact and state.opening_strain == 0.0
+        new_state = state_class(new.size_at_rest, 0.0, new.inertial_number)
+        return assembled_stress(new.mean_pressure, new.deviator), new_state, succeeded
+
+    return small_step
 
 
 @pointwise

@@ -11,9 +11,19 @@ iterations is enough for steps as small as explicit dynamics takes. Where it is 
 bracketed return has to be called.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
-from grainlaw.materials import SymmetricTensor, contraction, pointwise, shear_modulus
+from grainlaw.materials import (
+    SymmetricTensor,
+    assembled_stress,
+    contraction,
+    deviator,
+    pointwise,
+    pressure,
+    shear_modulus,
+    volumetric_strain_rate,
+)
 from grainlaw.materials.elementary import fused
 from grainlaw.plugins.cam_clay.return_map import TOLERANCE, CamClay, total_slope
 
@@ -92,6 +102,35 @@ def cam_clay_small_step(
     is_root = error <= 0.0 and exponent <= LARGEST_EXPONENT and last.relaxation >= 0.0
     succeeded = abs(trial.growth) <= LARGEST_EXPONENT and (is_root or not yields)
     return SmallStep(p, ratio * p, s, succeeded)
+
+
+def small_step_of(state_class: type[Any], constants_of: Callable[[Any], CamClay]) -> Callable[..., Any]:
+    """`Law.small_step` of modified Cam Clay, for points that are in contact and stay so."""
+
+    def small_step(
+        stress: SymmetricTensor,
+        strain_rate: SymmetricTensor,
+        density: float,
+        state: Any,
+        parameters: Any,
+        dt: float,
+    ) -> tuple[SymmetricTensor, Any, bool]:
+        smallest = parameters.stress_free_pressure
+        start_pressure = pressure(stress)
+        new = cam_clay_small_step(
+            max(start_pressure, smallest),
+            deviator(stress),
+            volumetric_strain_rate(strain_rate) * dt,
+            dt * deviator(strain_rate),
+            state.preconsolidation_pressure,
+            constants_of(parameters),
+        )
+        in_contact = min(start_pressure, new.mean_pressure, 0.5 * new.preconsolidation_pressure) >= smallest
+        succeeded = new.succeeded and in_contact and state.opening_strain == 0.0
+        new_state = state_class(new.preconsolidation_pressure, 0.0)
+        return assembled_stress(new.mean_pressure, new.deviator), new_state, succeeded
+
+    return small_step
 
 
 @pointwise
