@@ -31,7 +31,7 @@ from benchmarks.tables import (
 )
 from benchmarks.two_cores import gain_of_two_cores
 from grainlaw.mpm_core.parallel.threads import cores
-from grainlaw.validation.collapses import SCENES
+from grainlaw.validation.cases.collapses.column import SCENES
 
 
 class Part(StrEnum):

@@ -2,7 +2,7 @@
 
 from grainlaw.mpm_core.parallel.threads import use_threads
 from grainlaw.mpm_core.simulation import Simulation
-from grainlaw.validation.collapses import collapse
+from grainlaw.validation.cases.collapses.column import collapse
 
 # The rate [1/s] at which the column spreads and sinks: about the mean of a collapse that takes half a second.
 SPREADING_RATE = 2.0

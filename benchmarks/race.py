@@ -10,7 +10,7 @@ from benchmarks.timing import Duration, Spread, spread, timed
 from benchmarks.yardstick import Yardstick
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.mpm_core.simulation import Simulation
-from grainlaw.validation.collapses import collapse
+from grainlaw.validation.cases.collapses.column import collapse
 
 YARDSTICK = "yardstick"
 LAPS = 60

@@ -14,7 +14,7 @@ from benchmarks.columns import cell_size_for, make_steps, moving_column
 from benchmarks.roofline import Roofline
 from benchmarks.yardstick import Yardstick
 from grainlaw.mpm_core.parallel.threads import cores
-from grainlaw.validation.collapses import collapse
+from grainlaw.validation.cases.collapses.column import collapse
 
 ROOT = Path(__file__).resolve().parent.parent
 CLAY = {"material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"}

@@ -13,7 +13,7 @@ from grainlaw.materials import InputError, get_material
 from grainlaw.materials.calibration.findings import Findings
 from grainlaw.materials.calibration.fit import calibrate, fit_to_data
 from grainlaw.plugins.mu_i.friction import friction_of_inertial_number
-from grainlaw.validation.cam_clay_solutions import EXAMPLE
+from grainlaw.validation.cases.point.cam_clay_solutions import EXAMPLE
 
 SHEAR_DATA = Path(validation.__file__).parent / "calibration" / "data" / "plane_shear_liggghts.csv"
 TRIALS = 200

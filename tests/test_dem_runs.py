@@ -17,8 +17,8 @@ from grainlaw.validation.dem.collapse import floor_of
 from grainlaw.validation.dem.packing import Packing, cut
 from grainlaw.validation.dem.programs import Program, failure, run_program
 from grainlaw.validation.dem.runs import Run, inputs_hash, runs_of
-from grainlaw.validation.dem_report.reference_set import REFERENCE
 from grainlaw.validation.grains.observation import read_observation
+from grainlaw.validation.reference.reference_set import REFERENCE
 
 
 def test_both_codes_are_listed():

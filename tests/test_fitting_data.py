@@ -12,11 +12,11 @@ from grainlaw.materials.calibration.model import ForwardModel, answer
 from grainlaw.plugins import mu_i_phi_i
 from grainlaw.validation.dem.batch import case_named
 from grainlaw.validation.dem.coverage import missing_runs, present_runs, seeds_told
+from grainlaw.validation.dem.judging.fitting_data import FLOW_FILE, START_FILE, START_STRAINS, write_data
+from grainlaw.validation.dem.judging.judged_laws import JUDGED_LAWS
+from grainlaw.validation.dem.judging.variants import CONTROLS, LIMITS
 from grainlaw.validation.dem.runs import Run, runs_of
-from grainlaw.validation.dem_report.fitting_data import FLOW_FILE, START_FILE, START_STRAINS, write_data
-from grainlaw.validation.dem_report.judged_laws import JUDGED_LAWS
-from grainlaw.validation.dem_report.reference_set import REFERENCE, read_reference_set
-from grainlaw.validation.dem_report.variants import CONTROLS, LIMITS
+from grainlaw.validation.reference.reference_set import REFERENCE, read_reference_set
 
 LAW = "mu_i_phi_i"
 

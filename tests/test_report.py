@@ -8,9 +8,9 @@ from typer.testing import CliRunner
 
 from grainlaw.cli.main import app
 from grainlaw.mpm_core import Scene, run
-from grainlaw.validation.dem_report.own_grains import judged_runs, write_page
-from grainlaw.validation.dem_report.stored import SECTIONS, read_sections
-from grainlaw.validation.dem_report.whole_report import write_whole_report
+from grainlaw.validation.report.own_grains import judged_runs, write_page
+from grainlaw.validation.report.stored import SECTIONS, read_sections
+from grainlaw.validation.report.whole_report import write_whole_report
 
 GRAINS = Path(__file__).parent / "small_collapse"
 COMMAND = "grainlaw compare column --dem grains --out against"

@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
-from grainlaw.validation.speed_error.exact import ExactSetting, cost_and_error
-from grainlaw.validation.speed_error.front import error, mean_observables, pareto_front
-from grainlaw.validation.speed_error.setting import Outcome, Setting, as_dict
-from grainlaw.validation.speed_error.store import made_with_other_kernels, outcomes
-from grainlaw.validation.speed_error.sweep import references
+from grainlaw.validation.cases.speed.exact import ExactSetting, cost_and_error
+from grainlaw.validation.cases.speed.front import error, mean_observables, pareto_front
+from grainlaw.validation.cases.speed.setting import Outcome, Setting, as_dict
+from grainlaw.validation.cases.speed.store import made_with_other_kernels, outcomes
+from grainlaw.validation.cases.speed.sweep import references
 
 OUTCOME = Outcome(points=1, steps=1, cpu_time=1.0, runout=1.0, height=0.5, center=0.2, mark="")
 

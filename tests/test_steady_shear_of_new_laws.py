@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from grainlaw.reference.law_pages import own_laws
-from grainlaw.validation.cases.collapse_of_every_law import LAWS
-from grainlaw.validation.element import element_history
+from grainlaw.validation.cases.collapses.collapse_of_every_law import LAWS
+from grainlaw.validation.cases.point.element import element_history
 
 WITHOUT_GRAINS_AT_REST = {"linear_elastic", "neo_hookean", "newtonian", "mu_i_lc_viscous"}
 

@@ -55,7 +55,7 @@ def test_two_cases_with_a_report(monkeypatch, tmp_path, capsys):
 
 
 def test_a_failing_case_is_exit_code_1(monkeypatch, capsys):
-    monkeypatch.setattr("grainlaw.validation.cases.opening_and_closing.BAND", 0.0)
+    monkeypatch.setattr("grainlaw.validation.cases.point.opening_and_closing.BAND", 0.0)
     assert call_command_line(monkeypatch, "validate", "opening_and_closing", "--quick") == 1
     assert "0 of 1 cases pass" in capsys.readouterr().out
 

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from grainlaw.validation.cam_clay_solutions import EXAMPLE
-from grainlaw.validation.cases.bagnold_incline import HEIGHT, exact_velocity, inertial_number
-from grainlaw.validation.cases.elastic_bar_vibration import frequency
-from grainlaw.validation.cases.generalised_vortex import history, largest
-from grainlaw.validation.cases.rigid_rotation import START, turned_stress
-from grainlaw.validation.cases.sliding_block import exact_distance
+from grainlaw.validation.cases.exact.bagnold_incline import HEIGHT, exact_velocity, inertial_number
+from grainlaw.validation.cases.exact.elastic_bar_vibration import frequency
+from grainlaw.validation.cases.exact.generalised_vortex import history, largest
+from grainlaw.validation.cases.exact.rigid_rotation import START, turned_stress
+from grainlaw.validation.cases.exact.sliding_block import exact_distance
+from grainlaw.validation.cases.point.cam_clay_solutions import EXAMPLE
 
 
 def test_golden_states_of_the_worked_example():

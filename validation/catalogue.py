@@ -7,62 +7,64 @@ from grainlaw.materials.errors import InputError, nearest_name
 from grainlaw.validation.case import Case
 
 STANDARD = "standard"
-# From one point to whole scenes.
-SUITES: dict[str, tuple[str, ...]] = {
+# Where each case is: the room and the module of its name, or room, module and the name of a row of its table.
+_PLACES: dict[str, tuple[str, ...]] = {
+    # From one point to whole scenes.
     STANDARD: (
-        "simple_shear",
-        "mcc_triaxial_drained",
-        "mcc_triaxial_undrained",
-        "mcc_one_dimensional_compression",
-        "return_mapping",
-        "mu_i_mcc_return",
-        "mu_i_mcc_steady_shear",
-        "mu_i_mcc_rate_jump",
-        "mu_i_mcc_cam_clay_limit",
-        "opening_and_closing",
-        "rigid_rotation",
-        "elastic_bar_vibration",
-        "axis_aligned_solution",
-        "generalised_vortex",
-        "self_weight_column",
-        "contact_gap",
-        "sliding_block",
-        "two_discs",
-        "poiseuille",
-        "bagnold_incline",
-        "mirror_symmetry",
-        "shifted_column",
-        "heap_at_rest",
-        "rest",
-        "time_step_independence",
+        "point.simple_shear",
+        "point.mcc_triaxial_drained",
+        "point.mcc_triaxial_undrained",
+        "point.mcc_one_dimensional_compression",
+        "point.return_mapping",
+        "point.mu_i_mcc_return",
+        "point.mu_i_mcc_steady_shear",
+        "point.mu_i_mcc_rate_jump",
+        "point.mu_i_mcc_cam_clay_limit",
+        "point.opening_and_closing",
+        "exact.rigid_rotation",
+        "exact.elastic_bar_vibration",
+        "exact.axis_aligned_solution",
+        "exact.generalised_vortex",
+        "exact.self_weight_column",
+        "exact.contact_gap",
+        "exact.sliding_block",
+        "exact.two_discs",
+        "exact.poiseuille",
+        "exact.bagnold_incline",
+        "collapses.invariances.mirror_symmetry",
+        "collapses.invariances.shifted_column",
+        "exact.heap_at_rest",
+        "collapses.rest",
+        "collapses.invariances.time_step_independence",
     ),
     # One scene for each granular law.
-    "laws": ("collapse_of_every_law",),
+    "laws": ("collapses.collapse_of_every_law",),
     # What a user may do to it.
     "hard": (
-        "overconsolidated_collapses",
-        "stiffness_range",
-        "regularisation_range",
-        "grain_size_range",
-        "points_per_cell",
-        "floor_friction_range",
-        "falling_block",
-        "thrown_cloud",
-        "slender_and_thin",
-        "leaving_the_domain",
-        "step_limit",
+        "hard.ranges.overconsolidated_collapses",
+        "hard.ranges.stiffness_range",
+        "hard.ranges.regularisation_range",
+        "hard.ranges.grain_size_range",
+        "hard.ranges.points_per_cell",
+        "hard.ranges.floor_friction_range",
+        "hard.falling_block",
+        "hard.thrown_cloud",
+        "hard.slender_and_thin",
+        "hard.leaving_the_domain",
+        "hard.step_limit",
     ),
     # Collapses against finer grids, other frames and experiments.
     "collapses": (
-        "grid_convergence",
-        "runout_scaling",
-        "aluminium_bars",
-        "moving_frame",
-        "turned_scene",
+        "collapses.grid_convergence",
+        "collapses.runout_scaling",
+        "collapses.aluminium_bars",
+        "collapses.invariances.moving_frame",
+        "collapses.invariances.turned_scene",
     ),
     # What accuracy costs.
-    "speed": ("sleeping", "speed_error"),
+    "speed": ("speed.sleeping", "speed.speed_error"),
 }
+SUITES = {suite: tuple(place.rpartition(".")[2] for place in places) for suite, places in _PLACES.items()}
 NAMES = tuple(name for suite in SUITES.values() for name in suite)
 
 
@@ -74,7 +76,10 @@ def get_case(name: str) -> Case:
     name = name.replace("-", "_")
     if name not in NAMES:
         raise InputError(f"unknown validation case or suite '{name}'; {nearest_name(name, [*NAMES, *SUITES])}")
-    case: Case = import_module(f"grainlaw.validation.cases.{name}").CASE
+    place = next(place for places in _PLACES.values() for place in places if place.endswith(f".{name}"))
+    room, module, *row = place.split(".")
+    found = import_module(f"grainlaw.validation.cases.{room}.{module}")
+    case: Case = found.CASES[name] if row else found.CASE
     return case
 
 

@@ -73,8 +73,8 @@ def compare(
 
 def _judge(folders: list[Path], dem: list[Path], out: Path | None) -> None:
     from grainlaw.cli.dem_report_command import print_table
-    from grainlaw.validation.dem_report.own_grains import judged_runs, write_page
-    from grainlaw.validation.dem_report.tables import comparison_table
+    from grainlaw.validation.report.grain_tables import comparison_table
+    from grainlaw.validation.report.own_grains import judged_runs, write_page
     from grainlaw.validation.report.write import prepare
 
     if out is not None:

@@ -19,7 +19,7 @@ def list_cases() -> None:
 
     from grainlaw.validation.dem.catalogue import CASES
     from grainlaw.validation.dem.coverage import missing_runs, seeds_told
-    from grainlaw.validation.dem_report.reference_set import REFERENCE
+    from grainlaw.validation.reference.reference_set import REFERENCE
 
     table = Table(box=box.SIMPLE_HEAD)
     for heading in ("case", "what it is", "LIGGGHTS seeds", "YADE seeds", "not in the reference set"):

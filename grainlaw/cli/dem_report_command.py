@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import typer
 
 if TYPE_CHECKING:
-    from grainlaw.validation.dem_report.tables import Table
+    from grainlaw.validation.report.grain_tables import Table
 
 SUITE = "dem"
 FOLDER = Path("runs") / "dem_report"
@@ -15,10 +15,10 @@ FOLDER = Path("runs") / "dem_report"
 def judge_by_grains(out: Path | None, quick: bool) -> None:
     """Make the report; exit code 1 if a negative control is not noticed."""
     from grainlaw.validation.case import Effort
-    from grainlaw.validation.dem_report.reference_set import read_reference_set
-    from grainlaw.validation.dem_report.report import make_report
-    from grainlaw.validation.dem_report.tables import scatter_table, summary_table, variant_table
-    from grainlaw.validation.dem_report.write import write_report
+    from grainlaw.validation.dem.judging.laws_against_grains import make_report
+    from grainlaw.validation.reference.reference_set import read_reference_set
+    from grainlaw.validation.report.grain_report import write_report
+    from grainlaw.validation.report.grain_tables import scatter_table, summary_table, variant_table
     from grainlaw.validation.report.write import prepare
 
     folder = out or FOLDER

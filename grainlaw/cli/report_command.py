@@ -20,7 +20,7 @@ def report(
     ] = Path("runs/report"),
 ) -> None:
     """Write one self-contained page, and the same as Markdown and JSON; nothing is computed again."""
-    from grainlaw.validation.dem_report.whole_report import write_whole_report
+    from grainlaw.validation.report.whole_report import write_whole_report
     from grainlaw.validation.report.write import prepare
 
     prepare(out)

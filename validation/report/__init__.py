@@ -1,1 +1,1 @@
-"""What a validation run leaves behind: JSON, JUnit and one self-contained page."""
+"""Results as JSON, JUnit, Markdown and self-contained pages, all through one pair of templates."""

@@ -1,0 +1,1 @@
+"""Column collapses: what must not matter to them, finer grids, experiments, every law."""

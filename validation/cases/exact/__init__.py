@@ -1,0 +1,1 @@
+"""Scenes whose solution is known."""

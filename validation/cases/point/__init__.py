@@ -1,0 +1,1 @@
+"""One material point: element tests and return maps."""

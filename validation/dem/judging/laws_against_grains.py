@@ -1,0 +1,124 @@
+"""The whole comparison: scatter of the grains, laws on every column, controls, limits."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from grainlaw.materials import InputError, SimulationError, get_material
+from grainlaw.validation.case import Effort, Evidence
+from grainlaw.validation.cases.collapses import aluminium_bars
+from grainlaw.validation.dem.judging.column import column_of
+from grainlaw.validation.dem.judging.fitted_laws import FittedLaw, JudgedLaw, fitted
+from grainlaw.validation.dem.judging.fitting_data import write_data
+from grainlaw.validation.dem.judging.judged_laws import JUDGED_LAWS
+from grainlaw.validation.dem.judging.judgement import Announce, Bench, Judgement
+from grainlaw.validation.dem.judging.variants import CONTROLS, LIMITS, Variant
+from grainlaw.validation.grains.distance import Verdict
+from grainlaw.validation.reference.reference_set import Ensemble, ReferenceSet, Scatter, scatter
+
+FLOOR = "glued"
+# The column on which controls and limits are run, and the only one of a quick report.
+MIDDLE_ASPECT_RATIO = 2.0
+CELL_SIZE = {Effort.QUICK: 0.0125, Effort.FULL: 0.00625}
+DATA = "data"
+
+
+@dataclass(frozen=True)
+class Report:
+    """Everything that the page shows.
+
+    laws        fitted to shear and compression
+    unfitted    what kept a law from being fitted, by its title
+    judgements  one for each law and column
+    controls    deliberate mistakes, which must be noticed
+    limits      laws with one thing changed
+    experiment  aluminium bars, against their published deposit; None in a quick report
+    """
+
+    effort: Effort
+    cell_size: float
+    scatter: list[Scatter]
+    columns: list[Ensemble]
+    laws: list[FittedLaw]
+    unfitted: dict[str, str]
+    judgements: list[Judgement]
+    controls: list[Judgement]
+    limits: list[Judgement]
+    experiment: Evidence | None
+
+    @property
+    def missed(self) -> list[Judgement]:
+        """The deliberate mistakes that were not noticed; one that could not be run was not."""
+        return [found for found in self.controls if not _noticed(found)]
+
+    def of_column(self, ensemble: Ensemble) -> list[Judgement]:
+        """The judgements on one column."""
+        return [found for found in self.judgements if found.ensemble is ensemble]
+
+    def on_columns(self, title: str, wanted: Verdict) -> int:
+        """On how many columns a law has a verdict."""
+        return sum(found.name == title and found.verdict is wanted for found in self.judgements)
+
+
+def make_report(reference: ReferenceSet, folder: Path, effort: Effort, announce: Announce) -> Report:
+    """Fit, run and compare; a quick report runs the first law on one column with coarse cells."""
+    columns = reference.columns(FLOOR)
+    if not columns:
+        raise InputError(f"the reference set holds no columns on a {FLOOR} floor")
+    middle = min(columns, key=lambda found: abs(math.log(found.aspect_ratio / MIDDLE_ASPECT_RATIO)))
+    is_quick = effort is Effort.QUICK
+    column = column_of(middle)
+    write_data(reference, folder / DATA, column.grain_density, column.grain_diameter)
+    laws, unfitted = _fitted(JUDGED_LAWS[:1] if is_quick else JUDGED_LAWS, folder / DATA, announce)
+    if not laws:
+        raise InputError(f"no law could be fitted: {'; '.join(unfitted.values())}")
+    bench = Bench(folder, CELL_SIZE[effort], announce)
+    judged_columns = [middle] if is_quick else columns
+    return Report(
+        effort=effort,
+        cell_size=bench.cell_size,
+        scatter=scatter(reference),
+        columns=judged_columns,
+        laws=laws,
+        unfitted=unfitted,
+        judgements=[bench.judge(law, ensemble) for ensemble in judged_columns for law in laws],
+        controls=_varied(bench, reference, laws, judged_columns, CONTROLS),
+        limits=[] if is_quick else _varied(bench, reference, laws, columns, LIMITS),
+        experiment=None if is_quick else aluminium_bars.measure(Effort.FULL),
+    )
+
+
+def _noticed(control: Judgement) -> bool:
+    order = list(Verdict)
+    wanted = control.variant.noticed if control.variant else Verdict.DIFFERS
+    return control.comparison is not None and order.index(control.verdict) >= order.index(wanted)
+
+
+def _varied(
+    bench: Bench,
+    reference: ReferenceSet,
+    laws: list[FittedLaw],
+    columns: list[Ensemble],
+    variants: Sequence[Variant],
+) -> list[Judgement]:
+    """The variants of the laws that were fitted, on the columns that are there."""
+    by_name = {found.judged.law: found for found in laws}
+    by_ratio = {round(found.aspect_ratio, 2): found for found in columns}
+    return [
+        bench.judge_variant(by_name[variant.law], reference, by_ratio[variant.aspect_ratio], variant)
+        for variant in variants
+        if variant.law in by_name and variant.aspect_ratio in by_ratio
+    ]
+
+
+def _fitted(judged: tuple[JudgedLaw, ...], folder: Path, announce: Announce) -> tuple[list[FittedLaw], dict[str, str]]:
+    laws, unfitted = [], {}
+    for law in judged:
+        announce(f"fitting {law.title}")
+        try:
+            get_material(law.law)
+            laws.append(fitted(law, folder))
+        except (InputError, SimulationError) as error:
+            unfitted[law.title] = str(error)
+    return laws, unfitted

@@ -1,0 +1,48 @@
+"""A user's runs against a user's grains."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from grainlaw.materials import atomic
+from grainlaw.validation.dem.judging.judgement import Judgement
+from grainlaw.validation.grains.distance import compare
+from grainlaw.validation.grains.reference_file import load_reference
+from grainlaw.validation.grains.run_observation import observe_run
+from grainlaw.validation.reference.reference_set import Ensemble
+from grainlaw.validation.report.grain_report import rendered
+from grainlaw.validation.report.grain_sections import Section, column_figures
+from grainlaw.validation.report.grain_tables import comparison_table, profile_table
+from grainlaw.validation.report.stored import SECTIONS, sections_as_json
+
+PAGE, TITLE = "comparison.html", "Runs against grains"
+
+
+def judged_runs(folders: Sequence[Path], references: Sequence[Path]) -> tuple[Ensemble, list[Judgement]]:
+    """Each run against all references, observed with the kernel of the references.
+
+    Raises InputError in one line for whatever cannot be read, and for columns of different size.
+    """
+    observed = [load_reference(path) for path in references]
+    width = float(np.mean([reference.description["kernel_width"] for reference in observed]))
+    densities = {float(found) for reference in observed if (found := reference.description.get("grain_density"))}
+    density = densities.pop() if len(densities) == 1 else None
+    ensemble = Ensemble(" and ".join(reference.label for reference in observed), tuple(observed))
+    judgements = []
+    for folder in folders:
+        run = observe_run(folder, width, density)
+        judgements.append(Judgement(folder.name, ensemble, run, compare(run, observed)))
+    return ensemble, judgements
+
+
+def write_page(folder: Path, ensemble: Ensemble, judgements: Sequence[Judgement], command: str) -> Path:
+    """Write a self-contained page with the table and the figures that `command` makes; returns its path."""
+    table = comparison_table(ensemble, judgements)
+    section = Section(
+        table.title, tables=(table, profile_table(judgements)), figures=column_figures(ensemble, judgements)
+    )
+    text = rendered("dem.html", TITLE, (), (section,), command)
+    atomic.write_text(folder / PAGE, text)
+    atomic.write_text(folder / SECTIONS, sections_as_json(TITLE, command, (section,)))
+    return folder / PAGE
