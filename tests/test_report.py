@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from grainlaw.cli.main import app
 from grainlaw.mpm_core import Scene, run
 from grainlaw.validation.report.own_grains import judged_runs, write_page
-from grainlaw.validation.report.stored import SECTIONS, read_sections
+from grainlaw.validation.report.page import SECTIONS, read_page
 from grainlaw.validation.report.whole_report import write_whole_report
 
 GRAINS = Path(__file__).parent / "small_collapse"
@@ -44,9 +44,9 @@ def test_runs_and_comparisons_make_one_page_without_other_files(folders, tmp_pat
 def test_a_report_of_a_report_keeps_its_tables(folders, tmp_path):
     _, against = folders
     write_whole_report([against], tmp_path)
-    title, command, parts = read_sections(against)
-    assert (title, command) == ("Runs against grains", COMMAND)
-    assert parts[0].tables[0].rows[0][0] == "column"
+    page = read_page(against)
+    assert (page.title, page.command) == ("Runs against grains", COMMAND)
+    assert page.sections[0].tables[0].rows[0][0] == "column"
 
 
 @pytest.mark.parametrize(

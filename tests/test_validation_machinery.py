@@ -8,9 +8,10 @@ import pytest
 
 from grainlaw.materials import SimulationError
 from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, curve, relative_error, upper_bound
-from grainlaw.validation.report.content import content
+from grainlaw.validation.report.case_content import content
+from grainlaw.validation.report.case_report import write_report
 from grainlaw.validation.report.junit import junit
-from grainlaw.validation.report.write import write_report
+from grainlaw.validation.report.write import as_json
 from grainlaw.validation.result import run_case
 
 WITHIN = relative_error("speed", "m/s", 1.0005, 1.0, 1e-3)
@@ -81,8 +82,8 @@ def test_junit_counts_failures_and_says_why():
 
 
 def test_json_holds_numbers_that_are_not_finite_as_null():
-    found = content([verdict([upper_bound("energy", "J", math.nan, 1.0)])])
-    assert json.loads(json.dumps(found, allow_nan=False))["cases"][0]["measurements"][0]["error"] is None
+    found = as_json(content([verdict([upper_bound("energy", "J", math.nan, 1.0)])]))
+    assert json.loads(found)["cases"][0]["measurements"][0]["error"] is None
 
 
 def test_the_page_is_self_contained_and_names_what_failed(tmp_path):

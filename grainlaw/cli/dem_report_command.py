@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import typer
 
 if TYPE_CHECKING:
-    from grainlaw.validation.report.grain_tables import Table
+    from grainlaw.validation.report.page import Table
 
 SUITE = "dem"
 FOLDER = Path("runs") / "dem_report"

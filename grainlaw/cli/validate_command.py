@@ -62,7 +62,7 @@ def validate(
     )
     _print_results(results)
     if out is not None:
-        from grainlaw.validation.report.write import write_report
+        from grainlaw.validation.report.case_report import write_report
 
         for path in write_report(out, results):
             typer.echo(f"  {path}")

@@ -1,7 +1,6 @@
 """What the page says, in its order: the scatter of the grains first, then what was fitted, judged and left out."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from grainlaw.validation.case import Evidence
 from grainlaw.validation.cases.collapses import aluminium_bars
@@ -9,6 +8,7 @@ from grainlaw.validation.dem.judging.judgement import Judgement
 from grainlaw.validation.dem.judging.laws_against_grains import Report
 from grainlaw.validation.grains.distance import PROFILE_BAND
 from grainlaw.validation.reference.reference_set import Ensemble, Rows
+from grainlaw.validation.report.case_report import measurement_table, pictures
 from grainlaw.validation.report.grain_figures import (
     distance_figure,
     profile_figure,
@@ -17,18 +17,16 @@ from grainlaw.validation.report.grain_figures import (
     stress_figure,
 )
 from grainlaw.validation.report.grain_tables import (
-    Table,
     cost_table,
     coverage_table,
     parameter_table,
-    percent,
     profile_table,
     scatter_table,
     summary_table,
     variant_table,
     verdict_table,
 )
-from grainlaw.validation.report.plots import figure_image
+from grainlaw.validation.report.page import Picture, Section
 
 MODELLED = (
     "Both sides are observed by the same functions. Solid fraction: each grain, or material point, is spread by a "
@@ -47,25 +45,6 @@ LEFT_OUT = (
     "release, the depth of four grains between periodic sides, and whatever a law does not describe (see its limits). "
     "Left out of the grains: shapes other than spheres, air, cohesion."
 )
-
-
-@dataclass(frozen=True)
-class ReportFigure:
-    """An image as a data URI, and what it shows."""
-
-    image: str
-    caption: str
-
-
-@dataclass(frozen=True)
-class Section:
-    """A part of the page; `command` makes its figures, where it is not the page's own."""
-
-    title: str
-    paragraphs: tuple[str, ...] = ()
-    tables: tuple[Table, ...] = ()
-    figures: tuple[ReportFigure, ...] = ()
-    command: str = ""
 
 
 def sections(report: Report, shear: Rows) -> list[Section]:
@@ -112,32 +91,16 @@ def _fits(report: Report, shear: Rows) -> Section:
     commands = [f"{law.judged.title}: in the folder data, {law.command}" for law in report.laws]
     image = shear_figure(shear, {law.judged.title: law.curve for law in report.laws})
     caption = "Plane shear of the grains: friction over the mean pressure and solid fraction; fitted laws."
-    return Section(table.title, (*remarks, *commands), (table,), (ReportFigure(image, caption),))
+    return Section(table.title, (*remarks, *commands), (table,), (Picture(image, caption),))
 
 
 def _experiment(found: Evidence) -> Section:
     """The solver against an experiment that it has nothing in common with."""
     case = aluminium_bars.CASE
-    rows = tuple(
-        (
-            one.name,
-            one.unit,
-            f"{one.measured:.4g}",
-            "" if one.reference is None else f"{one.reference:.4g}",
-            percent(one.error),
-            percent(one.band),
-            "yes" if one.within_band else "no",
-        )
-        for one in found.measurements
-    )
-    columns = ("quantity", "unit", "computed", "measured", "error", "band", "within")
-    title = "A published experiment: aluminium bars"
-    figures = tuple(
-        ReportFigure(figure_image(figure), f"{figure.title}: {case.reference}.") for figure in found.figures
-    )
     paragraphs = (f"The solver, {case.proves}. {case.reference}.", *(f"{note}." for note in found.notes))
-    table = Table(title, case.norm, columns, rows)
-    return Section(title, paragraphs, (table,), figures, f"grainlaw validate {case.name} --out DIR")
+    table = measurement_table(found.measurements, note=case.norm)
+    command = f"grainlaw validate {case.name} --out DIR"
+    return Section("A published experiment: aluminium bars", paragraphs, (table,), pictures(case, found), command)
 
 
 def _column(report: Report, ensemble: Ensemble) -> Section:
@@ -146,23 +109,23 @@ def _column(report: Report, ensemble: Ensemble) -> Section:
     return Section(table.title, tables=(table, profile_table(judgements)), figures=column_figures(ensemble, judgements))
 
 
-def column_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple[ReportFigure, ...]:
+def column_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple[Picture, ...]:
     """Surfaces, series and E_A over time on one column."""
     name = ensemble.case
     return (
-        ReportFigure(profile_figure(ensemble, judgements), f"Surfaces over time, {name}."),
-        ReportFigure(series_figure(ensemble, judgements), f"Runout, height, energy, solid fraction, {name}."),
+        Picture(profile_figure(ensemble, judgements), f"Surfaces over time, {name}."),
+        Picture(series_figure(ensemble, judgements), f"Runout, height, energy, solid fraction, {name}."),
         *_stress_figures(ensemble, judgements),
-        ReportFigure(
+        Picture(
             distance_figure(judgements, PROFILE_BAND),
             f"E_A over time, {name}; green: indistinguishable, yellow: acceptable; shaded: nearest to farthest.",
         ),
     )
 
 
-def _stress_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple[ReportFigure, ...]:
+def _stress_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple[Picture, ...]:
     """Stress along the axis, where runs of the grains tell their contacts."""
     if not any("stress_zz" in run.snapshots for run in ensemble.runs):
         return ()
     caption = f"Stress along the axis, {ensemble.case}; forces between the grains, no fluctuations."
-    return (ReportFigure(stress_figure(ensemble, judgements), caption),)
+    return (Picture(stress_figure(ensemble, judgements), caption),)

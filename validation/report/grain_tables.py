@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -15,19 +14,10 @@ from grainlaw.validation.dem.judging.laws_against_grains import Report
 from grainlaw.validation.dem.runs import runs_of
 from grainlaw.validation.grains.distance import MEASURES, PROFILE_BAND, Distance, Verdict
 from grainlaw.validation.reference.reference_set import REFERENCE, Ensemble, Scatter
+from grainlaw.validation.report.page import Table
 
 BANDS = (PROFILE_BAND, *(measure.band for measure in MEASURES))
 SYMBOLS = ("E_A", *(measure.symbol for measure in MEASURES))
-
-
-@dataclass(frozen=True)
-class Table:
-    """A heading, names of the columns and rows of text; cells of `Verdict` are shown in colour."""
-
-    title: str
-    note: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
 
 
 def scatter_table(found: Sequence[Scatter]) -> Table:

@@ -5,16 +5,15 @@ from pathlib import Path
 
 import numpy as np
 
-from grainlaw.materials import atomic
 from grainlaw.validation.dem.judging.judgement import Judgement
 from grainlaw.validation.grains.distance import compare
 from grainlaw.validation.grains.reference_file import load_reference
 from grainlaw.validation.grains.run_observation import observe_run
 from grainlaw.validation.reference.reference_set import Ensemble
-from grainlaw.validation.report.grain_report import rendered
-from grainlaw.validation.report.grain_sections import Section, column_figures
+from grainlaw.validation.report.grain_sections import column_figures
 from grainlaw.validation.report.grain_tables import comparison_table, profile_table
-from grainlaw.validation.report.stored import SECTIONS, sections_as_json
+from grainlaw.validation.report.page import SECTIONS, Page, Section
+from grainlaw.validation.report.write import write_texts
 
 PAGE, TITLE = "comparison.html", "Runs against grains"
 
@@ -42,7 +41,6 @@ def write_page(folder: Path, ensemble: Ensemble, judgements: Sequence[Judgement]
     section = Section(
         table.title, tables=(table, profile_table(judgements)), figures=column_figures(ensemble, judgements)
     )
-    text = rendered("dem.html", TITLE, (), (section,), command)
-    atomic.write_text(folder / PAGE, text)
-    atomic.write_text(folder / SECTIONS, sections_as_json(TITLE, command, (section,)))
+    page = Page(TITLE, (), (section,), command)
+    write_texts(folder, {PAGE: page.html(), SECTIONS: page.json()})
     return folder / PAGE

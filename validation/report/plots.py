@@ -64,4 +64,9 @@ def data_uri(canvas: Canvas) -> str:
     """A figure as a data URI, so that the page needs no other file."""
     buffer = io.BytesIO()
     canvas.savefig(buffer, format="png", dpi=RESOLUTION)
-    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
+    return embedded(buffer.getvalue())
+
+
+def embedded(picture: bytes) -> str:
+    """A PNG file as a data URI."""
+    return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")

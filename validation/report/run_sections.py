@@ -1,6 +1,5 @@
 """Finished runs as sections of a page: their final states, history and pictures."""
 
-import base64
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -8,8 +7,8 @@ from pathlib import Path
 from grainlaw.mpm_core.output.pictures import draw_history, write_run_pictures
 from grainlaw.mpm_core.output.recorder import SCENE_NAME
 from grainlaw.mpm_core.output.run_folder import RunFolder
-from grainlaw.validation.report.grain_sections import ReportFigure, Section
-from grainlaw.validation.report.grain_tables import Table
+from grainlaw.validation.report.page import Picture, Section, Table
+from grainlaw.validation.report.plots import embedded
 
 COLUMNS = (
     "run",
@@ -31,7 +30,7 @@ def run_sections(folders: Sequence[Path]) -> list[Section]:
     runs = [(folder.name, RunFolder(folder)) for folder in folders]
     table = Table("Runs", "Final states; cost with output.", COLUMNS, tuple(_row(name, run) for name, run in runs))
     history = _drawn(lambda path: draw_history(runs, path))
-    figures = (ReportFigure(history, "Runout, heights and energies over time."),)
+    figures = (Picture(history, "Runout, heights and energies over time."),)
     names = " ".join(str(folder) for folder in folders)
     parts = [Section(table.title, (), (table,), figures, f"grainlaw compare {names} --out DIR")]
     return [*parts, *(_run_section(folder) for folder in folders)]
@@ -59,7 +58,7 @@ def _run_section(folder: Path) -> Section:
     figures = []
     for path in write_run_pictures(folder):
         if path.name in captions:
-            figures.append(ReportFigure(_embedded(path), f"{captions[path.name]}, {folder.name}."))
+            figures.append(Picture(embedded(path.read_bytes()), f"{captions[path.name]}, {folder.name}."))
     return Section(folder.name, (), (), tuple(figures), f"grainlaw run {folder / SCENE_NAME} --out DIR")
 
 
@@ -67,8 +66,4 @@ def _drawn(draw: Callable[[Path], None]) -> str:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "picture.png"
         draw(path)
-        return _embedded(path)
-
-
-def _embedded(path: Path) -> str:
-    return "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
+        return embedded(path.read_bytes())

@@ -5,12 +5,11 @@ from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
-from grainlaw.materials import InputError, atomic
+from grainlaw.materials import InputError
 from grainlaw.mpm_core.output.recorder import SCENE_NAME
-from grainlaw.validation.report.grain_report import rendered
-from grainlaw.validation.report.grain_sections import Section
+from grainlaw.validation.report.page import SECTIONS, Page, Section, read_page
 from grainlaw.validation.report.run_sections import run_sections
-from grainlaw.validation.report.stored import SECTIONS, read_sections, sections_as_json
+from grainlaw.validation.report.write import write_texts
 
 NAME, TITLE = "report", "Runs and comparisons"
 
@@ -22,15 +21,9 @@ def write_whole_report(folders: Sequence[Path], out: Path) -> list[Path]:
     """
     sections, titles = _sections(folders)
     command = f"grainlaw report {' '.join(str(folder) for folder in folders)}"
-    introduction = (f"grainlaw {version('grainlaw')}: {', '.join(titles)}.",)
-    texts = {
-        f"{NAME}.html": rendered("dem.html", TITLE, introduction, sections, command),
-        f"{NAME}.md": rendered("dem.md", TITLE, introduction, sections, command),
-        f"{NAME}.json": sections_as_json(TITLE, command, sections),
-    }
-    for name, text in texts.items():
-        atomic.write_text(out / name, text)
-    return [out / name for name in texts]
+    page = Page(TITLE, (f"grainlaw {version('grainlaw')}: {', '.join(titles)}.",), tuple(sections), command)
+    texts = {f"{NAME}.html": page.html(), f"{NAME}.md": page.markdown(), f"{NAME}.json": page.json()}
+    return write_texts(out, texts)
 
 
 def _sections(folders: Sequence[Path]) -> tuple[list[Section], list[str]]:
@@ -39,10 +32,10 @@ def _sections(folders: Sequence[Path]) -> tuple[list[Section], list[str]]:
     titles = [folder.name for folder in runs]
     compared = [folder for folder in folders if folder not in runs]
     for folder in compared:
-        title, _, parts = read_sections(folder)
-        titles.append(f"{title} ({folder.name})")
+        page = read_page(folder)
+        titles.append(f"{page.title} ({folder.name})")
         prefix = f"{folder.name}: " if len(compared) > 1 else ""
-        sections += [replace(part, title=prefix + part.title) for part in parts]
+        sections += [replace(part, title=prefix + part.title) for part in page.sections]
     return sections, titles
 
 

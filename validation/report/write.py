@@ -1,14 +1,12 @@
-"""Writing the folder of a validation run."""
+"""Writing the files of a report."""
 
 import json
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from grainlaw.materials import InputError, atomic
-from grainlaw.validation.report.content import content
-from grainlaw.validation.report.junit import junit
-from grainlaw.validation.report.page import page
-from grainlaw.validation.result import CaseResult
 
 
 def prepare(folder: Path) -> None:
@@ -19,13 +17,24 @@ def prepare(folder: Path) -> None:
         raise InputError(f"--out {folder}: {error.strerror}") from None
 
 
-def write_report(folder: Path, results: Sequence[CaseResult]) -> list[Path]:
-    """Write results.json, junit.xml and report.html; returns their paths."""
-    texts = {
-        "results.json": json.dumps(content(results), indent=2, allow_nan=False) + "\n",
-        "junit.xml": junit(results),
-        "report.html": page(results),
-    }
+def write_texts(folder: Path, texts: Mapping[str, str]) -> list[Path]:
+    """Write files by name into a folder; returns their paths."""
     for name, text in texts.items():
         atomic.write_text(folder / name, text)
     return [folder / name for name in texts]
+
+
+def as_json(content: Any) -> str:
+    """Plain values as JSON, which has no number that is not finite: such a one becomes null."""
+    return json.dumps(_finite(content), indent=2, allow_nan=False) + "\n"
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, float):
+        # float() because numpy's own floats are no JSON numbers in every encoder.
+        return float(value) if math.isfinite(value) else None
+    return value

@@ -1,6 +1,5 @@
 """The results of a validation run as plain values, for JSON."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from importlib.metadata import version
@@ -11,13 +10,13 @@ from grainlaw.validation.result import CaseResult
 
 
 def content(results: Sequence[CaseResult]) -> dict[str, Any]:
-    """Everything but the figures; a number that is not finite becomes null, as JSON has none."""
+    """Everything but the figures."""
     return {
         "version": version("grainlaw"),
         "effort": str(results[0].effort) if results else "",
         "passed": all(result.passed for result in results),
         "wall_time": sum(result.wall_time for result in results),
-        "cases": [_finite(_case_content(result)) for result in results],
+        "cases": [_case_content(result) for result in results],
     }
 
 
@@ -53,14 +52,3 @@ def _case_content(result: CaseResult) -> dict[str, Any]:
 
 def _measurement_content(found: Measurement) -> dict[str, Any]:
     return {**asdict(found), "within_band": found.within_band}
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    if isinstance(value, float):
-        # float() because numpy's own floats are no JSON numbers in every encoder.
-        return float(value) if math.isfinite(value) else None
-    return value
