@@ -7,6 +7,7 @@ from scenes_for_tests import call_command_line
 
 from grainlaw.validation import catalogue
 from grainlaw.validation.case import Effort
+from grainlaw.validation.cases.hard.ranges import CASES as RANGES
 from grainlaw.validation.result import run_case
 
 # The cases that run one material point, fast enough for every test run.
@@ -35,6 +36,19 @@ def test_case_passes_and_its_control_fails(name):
     result = run_case(catalogue.get_case(name), Effort.QUICK)
     assert result.reasons == ()
     assert result.control_fails
+
+
+# Of the ranges that are not run above; all of their values would take longer.
+@pytest.mark.parametrize("name", sorted(RANGES.keys() - {*SMALL_SCENES}))
+def test_the_control_of_a_range_fails_its_own_claim(name):
+    control = RANGES[name].control(Effort.QUICK)
+    assert not any("not reached" in found.name for found in control)
+    assert any(not found.within_band for found in control)
+
+
+def test_no_two_cases_share_a_control():
+    mistakes = [catalogue.get_case(name).mistake for name in catalogue.NAMES]
+    assert sorted(set(mistakes)) == sorted(mistakes)
 
 
 @pytest.mark.parametrize("name", catalogue.NAMES)
