@@ -31,8 +31,9 @@ demo: $(INSTALLED)
 	@echo "ParaView:  $(MATERIALS:%=$(DEMO)/%/run.pvd)"
 	@echo "summaries: $(MATERIALS:%=$(DEMO)/%/summary.json)"
 
+# A file stays with one worker, so that what its tests share is made once; both keep compiled kernels in one place.
 test: $(INSTALLED)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
