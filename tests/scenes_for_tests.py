@@ -1,7 +1,11 @@
 """Small scenes for the tests of the core, and the command line called from within the tests."""
 
+import contextlib
 import copy
+import io
 import sys
+from typing import NamedTuple
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -119,6 +123,32 @@ def call_command_line(monkeypatch, *arguments):
     with pytest.raises(SystemExit) as exit_:
         main()
     return exit_.value.code or 0
+
+
+class Finished(NamedTuple):
+    """What a command left: its exit code, and what it printed."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+def grainlaw(*arguments):
+    """Run the command `grainlaw` in this process, which saves the start of another; its plugins are forgotten."""
+    from grainlaw.cli.main import main
+
+    known = registry()
+    laws, refusals = dict(known.laws), list(known.refusals)
+    out, err = io.StringIO(), io.StringIO()
+    with (
+        mock.patch.object(sys, "argv", ["grainlaw", *map(str, arguments)]),
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+        pytest.raises(SystemExit) as exit_,
+    ):
+        main()
+    known.laws, known.refusals = laws, refusals
+    return Finished(exit_.value.code or 0, out.getvalue(), err.getvalue())
 
 
 PLUGIN = '''

@@ -8,14 +8,14 @@ import pytest
 from calibration_data import exact, planned, with_noise
 from scipy.stats import binom
 
-from grainlaw import validation
+from grainlaw import materials
 from grainlaw.materials import InputError, get_material
 from grainlaw.materials.calibration.findings import Findings
 from grainlaw.materials.calibration.fit import calibrate, fit_to_data
 from grainlaw.plugins.mu_i.friction import friction_of_inertial_number
 from grainlaw.validation.cases.point.cam_clay_solutions import EXAMPLE
 
-SHEAR_DATA = Path(validation.__file__).parent / "calibration" / "data" / "plane_shear_liggghts.csv"
+SHEAR_DATA = Path(materials.__file__).parent / "calibration" / "data" / "plane_shear_liggghts.csv"
 TRIALS = 200
 
 CLAY = get_material("modified_cam_clay")

@@ -1,18 +1,13 @@
 """`grainlaw calibrate`: results, files, error lines and exit codes."""
 
 import json
-import subprocess
-import sys
 import tomllib
 
 import pytest
+from scenes_for_tests import grainlaw
 from test_calibration import SHEAR_DATA
 
 FIT = ("--fit", "static_friction", "--fit", "dynamic_friction", "--fix", "inertial_number_constant=0.15")
-
-
-def grainlaw(*arguments):
-    return subprocess.run([sys.executable, "-m", "grainlaw", *arguments], capture_output=True, text=True, check=False)
 
 
 def test_output_and_files_hold_the_estimates(tmp_path):

@@ -1,18 +1,12 @@
 """`grainlaw element`: results, files, error lines and exit codes."""
 
-import subprocess
-import sys
-
 import pytest
+from scenes_for_tests import grainlaw
 
 from grainlaw.cli.element_command import TESTS
 from grainlaw.materials.element.catalogue import TEST_NAMES
 
 FAST = ("--set", "time_step=0.1")
-
-
-def grainlaw(*arguments):
-    return subprocess.run([sys.executable, "-m", "grainlaw", *arguments], capture_output=True, text=True, check=False)
 
 
 def test_output_says_which_parameters_were_used_and_how_it_ended(tmp_path):

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import pytest
+from scenes_for_tests import grainlaw
 
 from grainlaw.materials import get_material
 
@@ -29,10 +30,6 @@ def function(*arguments):
 def grainlaw_materials():
     return [Law("unitless", "a law without a unit", Parameters, State, function, function, function)]
 """
-
-
-def grainlaw(*arguments):
-    return subprocess.run([sys.executable, "-m", "grainlaw", *arguments], capture_output=True, text=True, check=False)
 
 
 def test_list_names_every_law_and_its_origin():
