@@ -6,11 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from grainlaw.materials import InputError
+from grainlaw.materials import InputError, get_material
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
 
+# The paper's materials: a law and its parameter set.
+PAPER = {
+    "mu(I)-LC": ("mu_i_lc", "paper"),
+    "MCC OCR 1": ("modified_cam_clay", "paper"),
+    "MCC OCR 4": ("modified_cam_clay", "paper_ocr4"),
+}
+DENSITY = 1500.0
 SCENES = Path(__file__).resolve().parents[1] / "scenes"
 
 
@@ -25,6 +32,25 @@ def shipped_simulation(name: str, changes: dict[str, Any] | None = None) -> Simu
 def simulation_of(content: dict[str, Any]) -> Simulation:
     """The simulation of a scene given as nested dictionaries."""
     return Simulation(Scene.from_dict(content))
+
+
+def one_body(
+    material: tuple[str, str], shape: dict[str, Any], cell_size: float, upper: list[float], **body: Any
+) -> dict[str, Any]:
+    """A scene without gravity and walls but the smooth ones: a shape of a law with a parameter set, 1500 kg/m3."""
+    law, parameter_set = material
+    return {
+        "gravity": [0.0, 0.0],
+        "grid": {"cell_size": cell_size, "upper": upper},
+        "time": {"end": 1.0},
+        "material": {law: get_material(law).parameter_sets[parameter_set].parameters._asdict()},
+        "body": [{"material": law, "shape": shape, "density": DENSITY, **body}],
+    }
+
+
+def rectangle(x: float, y: float, width: float, height: float) -> dict[str, Any]:
+    """A rectangle from its lower left corner [m]."""
+    return {"kind": "rectangle", "lower": [x, y], "upper": [x + width, y + height]}
 
 
 def advance(

@@ -44,11 +44,6 @@ class Ensemble:
         """The time that all runs reach [s]."""
         return float(min(run.times[-1] for run in self.runs))
 
-    @property
-    def cost(self) -> float:
-        """Mean wall time of a run [s], NaN if no run told it."""
-        return float(np.mean([run.description.get("wall_time") or np.nan for run in self.runs]))
-
     def _of_description(self, key: str) -> float:
         value = self.runs[0].description.get(key)
         if not isinstance(value, int | float):

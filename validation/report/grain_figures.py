@@ -35,8 +35,7 @@ def profile_figure(ensemble: Ensemble, judgements: Sequence[Judgement]) -> str:
     all_axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes, time in zip(all_axes.flat, times, strict=True):
         surfaces = np.array([surface_at(run, time, x) for run in ensemble.runs])
-        axes.fill_between(x, surfaces.min(axis=0), surfaces.max(axis=0), color=BAND, lw=0, label="grains, all runs")
-        axes.plot(x, surfaces.mean(axis=0), color=MEAN, lw=1.0, label="grains, mean")
+        _grains(axes, x, surfaces)
         for color, judged, observation in _observed(judgements):
             axes.plot(x, surface_at(observation, time, x), color=color, lw=1.1, label=judged.name)
         axes.set_title(f"t = {time:.2f} s" + (", at rest" if time == times[-1] else ""), fontsize=9)
@@ -60,8 +59,7 @@ def series_figure(ensemble: Ensemble, judgements: Sequence[Judgement]) -> str:
     for axes, (name, label) in zip(all_axes.flat, SERIES, strict=True):
         values = np.array([np.interp(times, run.times, run.of(name)) for run in ensemble.runs if name in run.series])
         if len(values):
-            axes.fill_between(times, values.min(axis=0), values.max(axis=0), color=BAND, lw=0, label="grains, all runs")
-            axes.plot(times, values.mean(axis=0), color=MEAN, lw=1.0, label="grains, mean")
+            _grains(axes, times, values)
         for color, judged, observation in _observed(judgements):
             if name in observation.series:
                 axes.plot(observation.times, observation.of(name), color=color, lw=1.1, label=judged.name)
@@ -153,6 +151,12 @@ def _times(ensemble: Ensemble) -> list[float]:
     runout = np.mean([np.interp(times, run.times, run.of("runout")) for run in ensemble.runs], axis=0)
     growth = np.maximum.accumulate((runout - runout[0]) / (runout[-1] - runout[0]))
     return [float(np.interp(share, growth, times)) for share in SHARES_OF_RUNOUT] + [ensemble.end]
+
+
+def _grains(axes: Axes, x: np.ndarray, values: np.ndarray) -> None:
+    """Their runs, shape (run, x), as a band with its mean."""
+    axes.fill_between(x, values.min(axis=0), values.max(axis=0), color=BAND, lw=0, label="grains, all runs")
+    axes.plot(x, values.mean(axis=0), color=MEAN, lw=1.0, label="grains, mean")
 
 
 def _observed(judgements: Sequence[Judgement]) -> list[tuple[str, Judgement, Observation]]:

@@ -1,13 +1,11 @@
 """Blocks of granular material that fall one metre onto the floor."""
 
 import math
-from typing import Any
 
-from grainlaw.materials.registry import get_material
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Measurement, relative_error
 from grainlaw.validation.cases.hard.survival import NORM, SURVIVAL, notes, survivals, trial
-from grainlaw.validation.scenes import advance, simulation_of
+from grainlaw.validation.scenes import DENSITY, PAPER, advance, one_body, rectangle, simulation_of
 
 BAND = 1e-3
 DROP, SIZE, GRAVITY = 1.0, 0.2, 9.81
@@ -15,39 +13,23 @@ CELL = {Effort.QUICK: 0.025, Effort.FULL: 0.0125}
 END = {Effort.QUICK: 0.7, Effort.FULL: 1.0}
 # Just before a corner comes within reach of the floor.
 FREE_FALL = 0.4
-MATERIALS = {"mu(I)-LC": ("mu_i_lc", "paper"), "MCC OCR 4": ("modified_cam_clay", "paper_ocr4")}
-
-
-def scene(material: str, cell_size: float, gravity: float) -> dict[str, Any]:
-    """A block one metre above a rough floor, just in contact."""
-    law, parameter_set = MATERIALS[material]
-    return {
-        "gravity": [0.0, -gravity],
-        "grid": {"cell_size": cell_size, "upper": [2.0, 1.4]},
-        "boundary": {"bottom": {"kind": "friction", "coefficient": 0.7}},
-        "time": {"end": 1.0},
-        "material": {law: get_material(law).parameter_sets[parameter_set].parameters._asdict()},
-        "body": [
-            {
-                "material": law,
-                "shape": {"kind": "rectangle", "lower": [0.9, DROP], "upper": [1.1, DROP + SIZE]},
-                "density": 1500.0,
-                "initial_stress": {"kind": "uniform", "pressure": 10.0},
-            }
-        ],
-    }
+MATERIALS = ("mu(I)-LC", "MCC OCR 4")
 
 
 def falling(material: str, effort: Effort, gravity: float = GRAVITY) -> Simulation:
-    """The block at the start."""
-    return simulation_of(scene(material, CELL[effort], gravity))
+    """A block one metre above a rough floor, just in contact."""
+    stress = {"kind": "uniform", "pressure": 10.0}
+    shape = rectangle(0.9, DROP, SIZE, SIZE)
+    scene = one_body(PAPER[material], shape, CELL[effort], [2.0, 1.4], initial_stress=stress)
+    floor = {"bottom": {"kind": "friction", "coefficient": 0.7}}
+    return simulation_of({**scene, "gravity": [0.0, -gravity], "boundary": floor})
 
 
 def free_fall(material: str, effort: Effort, gravity: float = GRAVITY) -> Measurement:
     """The kinetic energy before the impact against that of the distance fallen, m g g t^2/2."""
     simulation = falling(material, effort, gravity)
     advance(simulation, FREE_FALL)
-    mass = 1500.0 * SIZE * SIZE
+    mass = DENSITY * SIZE * SIZE
     exact = 0.5 * mass * (GRAVITY * FREE_FALL) ** 2
     return relative_error(
         f"{material}: kinetic energy of the fall", "J/m", simulation.ledger.kinetic_at_end, exact, BAND

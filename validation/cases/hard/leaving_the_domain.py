@@ -3,10 +3,9 @@
 from typing import Any
 
 from grainlaw.materials import InputError, SimulationError
-from grainlaw.materials.registry import get_material
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
-from grainlaw.validation.scenes import advance, simulation_of
+from grainlaw.validation.scenes import PAPER, advance, one_body, simulation_of
 
 SPEED, END = 5.0, 0.3
 CELL = {Effort.QUICK: 0.05, Effort.FULL: 0.025}
@@ -19,22 +18,15 @@ def scene(cell_size: float, kind: str, direction: tuple[float, float]) -> dict[s
     wall: dict[str, Any] = {"kind": kind}
     if kind == "friction":
         wall["coefficient"] = 0.5
-    return {
-        "gravity": [0.0, 0.0],
-        "grid": {"cell_size": cell_size, "upper": [1.0, 1.0]},
-        "boundary": dict.fromkeys(("left", "right", "bottom", "top"), wall),
-        "time": {"end": END},
-        "material": {"mu_i_lc": get_material("mu_i_lc").parameter_sets["paper"].parameters._asdict()},
-        "body": [
-            {
-                "material": "mu_i_lc",
-                "shape": {"kind": "rectangle", "lower": [0.4, 0.4], "upper": [0.6, 0.6]},
-                "density": 1500.0,
-                "velocity": [SPEED * direction[0], SPEED * direction[1]],
-                "initial_stress": {"kind": "uniform", "pressure": 10.0},
-            }
-        ],
-    }
+    thrown = one_body(
+        PAPER["mu(I)-LC"],
+        {"kind": "rectangle", "lower": [0.4, 0.4], "upper": [0.6, 0.6]},
+        cell_size,
+        [1.0, 1.0],
+        velocity=[SPEED * direction[0], SPEED * direction[1]],
+        initial_stress={"kind": "uniform", "pressure": 10.0},
+    )
+    return {**thrown, "boundary": dict.fromkeys(("left", "right", "bottom", "top"), wall)}
 
 
 def points_beyond(simulation: Simulation) -> int:

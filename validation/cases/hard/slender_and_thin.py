@@ -2,41 +2,28 @@
 
 from typing import Any
 
-from grainlaw.materials.registry import get_material
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Measurement, upper_bound
 from grainlaw.validation.cases.hard.survival import NORM, SURVIVAL, notes, survivals, trial
-from grainlaw.validation.scenes import advance, simulation_of
+from grainlaw.validation.scenes import PAPER, advance, one_body, rectangle, simulation_of
 
 SETTLEMENT_BAND = 1e-2
 END = {Effort.QUICK: 0.5, Effort.FULL: 1.5}
 CELL = {Effort.QUICK: 0.025, Effort.FULL: 0.0125}
 WIDTH, ASPECT, LENGTH = 0.05, 20.0, 0.5
 FRICTION = 0.7
-MATERIALS = {"mu(I)-LC": ("mu_i_lc", "paper"), "MCC OCR 1": ("modified_cam_clay", "paper")}
+MATERIALS = ("mu(I)-LC", "MCC OCR 1")
 
 
 def scene(
     material: str, cell_size: float, size: tuple[float, float], half_domain: float, friction: float = FRICTION
 ) -> dict[str, Any]:
     """A rectangle of width and height on a rough floor, in the middle of the domain."""
-    law, parameter_set = MATERIALS[material]
-    left = half_domain - 0.5 * size[0]
-    return {
-        "gravity": [0.0, -9.81],
-        "grid": {"cell_size": cell_size, "upper": [2.0 * half_domain, 1.1]},
-        "boundary": {"bottom": {"kind": "friction", "coefficient": friction}},
-        "time": {"end": 1.5},
-        "material": {law: get_material(law).parameter_sets[parameter_set].parameters._asdict()},
-        "body": [
-            {
-                "material": law,
-                "shape": {"kind": "rectangle", "lower": [left, 0.0], "upper": [left + size[0], size[1]]},
-                "density": 1500.0,
-                "initial_stress": {"kind": "geostatic"},
-            }
-        ],
-    }
+    shape = rectangle(half_domain - 0.5 * size[0], 0.0, *size)
+    upper = [2.0 * half_domain, 1.1]
+    resting = one_body(PAPER[material], shape, cell_size, upper, initial_stress={"kind": "geostatic"})
+    floor = {"bottom": {"kind": "friction", "coefficient": friction}}
+    return {**resting, "gravity": [0.0, -9.81], "boundary": floor}
 
 
 def slender(material: str, effort: Effort) -> Simulation:

@@ -1,42 +1,23 @@
 """A cloud of opened material thrown together: no stress while its gaps close, then a collision."""
 
-from typing import Any
-
 import numpy as np
 
-from grainlaw.materials.registry import get_material
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Measurement, relative_error, upper_bound
 from grainlaw.validation.cases.hard.survival import NORM, SURVIVAL, notes, survivals, trial
-from grainlaw.validation.scenes import advance, simulation_of
+from grainlaw.validation.scenes import DENSITY, PAPER, advance, one_body, simulation_of
 
 STRESS_BAND, DENSITY_BAND, MOMENTUM_BAND = 1e-9, 1e-2, 1e-12
-CENTER, RADIUS, DENSITY_AT_START = np.array([[0.5], [0.5]]), 0.15, 1500.0
+CENTER, RADIUS = np.array([[0.5], [0.5]]), 0.15
 # Strain rate of opening and closing [1/s], and for how long [s]: a quarter more volume.
 RATE, OPENING = 5.0, 0.025
 # Free flight on the way in, as a share of the way out: the cloud must not have closed yet.
 STILL_OPEN = 0.9
 AFTERWARDS = 0.2
 CELL = {Effort.QUICK: 0.025, Effort.FULL: 0.0125}
-MATERIALS = {"mu(I)-LC": ("mu_i_lc", "paper"), "MCC OCR 4": ("modified_cam_clay", "paper_ocr4")}
-SPRING = {"linear elastic": ("linear_elastic", "soft_solid")}
-
-
-def scene(law: str, parameter_set: str, cell_size: float) -> dict[str, Any]:
-    """A disc without stress and gravity."""
-    return {
-        "gravity": [0.0, 0.0],
-        "grid": {"cell_size": cell_size, "upper": [1.0, 1.0]},
-        "time": {"end": 1.0},
-        "material": {law: get_material(law).parameter_sets[parameter_set].parameters._asdict()},
-        "body": [
-            {
-                "material": law,
-                "shape": {"kind": "disc", "center": CENTER.ravel().tolist(), "radius": RADIUS},
-                "density": DENSITY_AT_START,
-            }
-        ],
-    }
+DISC = {"kind": "disc", "center": CENTER.ravel().tolist(), "radius": RADIUS}
+MATERIALS = ("mu(I)-LC", "MCC OCR 4")
+SPRING = ("linear_elastic", "soft_solid")
 
 
 def throw(simulation: Simulation, rate: float) -> None:
@@ -47,25 +28,25 @@ def throw(simulation: Simulation, rate: float) -> None:
     simulation.measure_signals()
 
 
-def opened(law: str, parameter_set: str, effort: Effort) -> Simulation:
+def opened(material: tuple[str, str], effort: Effort) -> Simulation:
     """The cloud after it was thrown apart."""
-    simulation = simulation_of(scene(law, parameter_set, CELL[effort]))
+    simulation = simulation_of(one_body(material, DISC, CELL[effort], [1.0, 1.0]))
     throw(simulation, RATE)
     advance(simulation, OPENING)
     return simulation
 
 
-def flight(label: str, law: str, parameter_set: str, effort: Effort) -> tuple[tuple[Measurement, ...], Simulation]:
+def flight(label: str, material: tuple[str, str], effort: Effort) -> tuple[tuple[Measurement, ...], Simulation]:
     """Throw the cloud together at the rate that undoes the opening in the same time; measure before it closes."""
-    simulation = opened(law, parameter_set, effort)
+    simulation = opened(material, effort)
     body = simulation.bodies[0]
     rate = RATE / (1.0 + RATE * OPENING)
     throw(simulation, -rate)
     advance(simulation, OPENING + STILL_OPEN * OPENING)
-    scale = DENSITY_AT_START * (rate * RADIUS) ** 2
+    scale = DENSITY * (rate * RADIUS) ** 2
     stress = float(np.abs(body.stress).max())
     size = (1.0 + RATE * OPENING) * (1.0 - rate * STILL_OPEN * OPENING)
-    exact = DENSITY_AT_START / size**2
+    exact = DENSITY / size**2
     inside = np.hypot(*(body.positions - CENTER)) < 0.7 * RADIUS
     found = float(body.density[inside].mean())
     return (
@@ -85,8 +66,8 @@ def measure(effort: Effort) -> Evidence:
     """Both materials, in flight and through the collision."""
     measurements: list[Measurement] = []
     trials = {}
-    for label, (law, parameter_set) in MATERIALS.items():
-        found, simulation = flight(label, law, parameter_set, effort)
+    for label in MATERIALS:
+        found, simulation = flight(label, PAPER[label], effort)
         simulation.ledger.initial_kinetic = simulation.ledger.kinetic
         trials[label] = trial(simulation, simulation.time + AFTERWARDS)
         measurements += [*found, momentum(label, simulation)]
@@ -95,7 +76,7 @@ def measure(effort: Effort) -> Evidence:
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """A material that does not open."""
-    found, _ = flight("linear elastic", *SPRING["linear elastic"], Effort.QUICK)
+    found, _ = flight("linear elastic", SPRING, Effort.QUICK)
     return found
 
 

@@ -40,14 +40,6 @@ class Judgement:
         """The verdict; what breaks down differs."""
         return Verdict.DIFFERS if self.comparison is None else self.comparison.verdict
 
-    @property
-    def point_steps_per_second(self) -> float:
-        """Point-steps per second of one core."""
-        if self.observation is None:
-            return float("nan")
-        cost = self.observation.description
-        return float(cost["points"] * cost["steps"] / cost["cpu_time"])
-
 
 @dataclass(frozen=True)
 class Bench:

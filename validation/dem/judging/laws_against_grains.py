@@ -56,10 +56,6 @@ class Report:
         """The judgements on one column."""
         return [found for found in self.judgements if found.ensemble is ensemble]
 
-    def on_columns(self, title: str, wanted: Verdict) -> int:
-        """On how many columns a law has a verdict."""
-        return sum(found.name == title and found.verdict is wanted for found in self.judgements)
-
 
 def make_report(reference: ReferenceSet, folder: Path, effort: Effort, announce: Announce) -> Report:
     """Fit, run and compare; a quick report runs the first law on one column with coarse cells."""
