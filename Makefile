@@ -31,9 +31,9 @@ demo: $(INSTALLED)
 	@echo "ParaView:  $(MATERIALS:%=$(DEMO)/%/run.pvd)"
 	@echo "summaries: $(MATERIALS:%=$(DEMO)/%/summary.json)"
 
-# A file stays with one worker, so that what its tests share is made once; both keep compiled kernels in one place.
+# A file stays with one worker, so that what its tests share is made once; tests/conftest.py says which come first.
 test: $(INSTALLED)
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
