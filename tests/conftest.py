@@ -8,7 +8,7 @@ from installation import Installation, installed_once
 
 # What takes longest comes first, so that no worker is left alone with it at the end. The kernels that most tests need
 # are compiled once: the second file compiles its own in another environment meanwhile.
-FIRST = ("test_run.py", "test_template_package.py", "test_docs.py", "test_validation_command.py")
+FIRST = ("test_run.py", "test_package.py", "test_docs.py", "test_template_package.py", "test_validation_command.py")
 
 
 @pytest.fixture(scope="session")
