@@ -3,20 +3,15 @@
 import math
 
 from grainlaw.materials.element.result import ElementResult
-from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
 from grainlaw.validation.cases.point.cam_clay_solutions import EXAMPLE
-from grainlaw.validation.cases.point.element import element_history
-from grainlaw.validation.cases.point.triaxial import axial_strains, example_values
+from grainlaw.validation.cases.point.triaxial import example_path, path_convergence
 
+TEST = "oedometer"
 BAND = 1e-4
+# Far enough to forget the isotropic start.
 FINAL_STRAIN = 0.64
 TRANSIENT_STRAIN = 0.032
-
-
-def compression(strain_of_a_step: float, assignments: dict[str, float] | None = None) -> ElementResult:
-    """Axial compression without lateral strain, far enough to forget the isotropic start."""
-    values = example_values(FINAL_STRAIN, strain_of_a_step) | (assignments or {})
-    return element_history("oedometer", "modified_cam_clay", None, values)
 
 
 def earth_pressure(result: ElementResult) -> float:
@@ -26,7 +21,7 @@ def earth_pressure(result: ElementResult) -> float:
 
 def measurements(assignments: dict[str, float]) -> tuple[Measurement, ...]:
     """K0, and the slope of compression between the middle and the end."""
-    result = compression(1e-5, assignments)
+    result = example_path(TEST, FINAL_STRAIN, 1e-5, assignments)
     middle = len(result.time) // 2
     log_pressure = math.log(result.pressure[-1] / result.pressure[middle])
     slope = (result.log_specific_volume[middle] - result.log_specific_volume[-1]) / log_pressure
@@ -37,21 +32,16 @@ def measurements(assignments: dict[str, float]) -> tuple[Measurement, ...]:
     )
 
 
-def convergence(effort: Effort) -> Convergence:
-    """Error in the axial stress on the way from the isotropic state to K0, over the strain of a step."""
+def error_on_the_way(result: ElementResult) -> float:
+    """In the axial stress between the isotropic state and K0."""
     p, q = EXAMPLE.one_dimensional_state(TRANSIENT_STRAIN)
     reference = p + 2.0 / 3.0 * q
-    errors = []
-    for size in axial_strains(effort):
-        values = example_values(TRANSIENT_STRAIN, size)
-        result = element_history("oedometer", "modified_cam_clay", None, values)
-        errors.append(abs(-result.stress[-1, 1] - reference) / reference)
-    return Convergence("axial stress", "axial strain of a step", axial_strains(effort), tuple(errors), least_order=0.95)
+    return float(abs(-result.stress[-1, 1] - reference) / reference)
 
 
 def measure(effort: Effort) -> Evidence:
     """The law as it is."""
-    result = compression(8e-3)
+    result = example_path(TEST, FINAL_STRAIN, 8e-3)
     ratio = result.stress[:, 0] / result.stress[:, 1]
     reference = EXAMPLE.earth_pressure_at_rest()
     figure = Figure(
@@ -63,7 +53,8 @@ def measure(effort: Effort) -> Evidence:
             curve("modified_cam_clay", -result.strain[:, 1], ratio),
         ),
     )
-    return Evidence(measurements({}), (convergence(effort),), (figure,))
+    order = path_convergence("axial stress", TEST, TRANSIENT_STRAIN, effort, error_on_the_way)
+    return Evidence(measurements({}), (order,), (figure,))
 
 
 def control(effort: Effort) -> tuple[Measurement, ...]:

@@ -3,11 +3,11 @@
 import numpy as np
 
 from grainlaw.materials.element.result import ElementResult
-from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
 from grainlaw.validation.cases.point.cam_clay_solutions import EXAMPLE
-from grainlaw.validation.cases.point.element import element_history
-from grainlaw.validation.cases.point.triaxial import axial_strains, example_values, shear_strain
+from grainlaw.validation.cases.point.triaxial import example_path, path_convergence, shear_strain
 
+TEST = "triaxial-drained"
 BAND = 1e-4
 SHEAR_STRAIN = 0.1
 
@@ -21,10 +21,10 @@ def state_at(result: ElementResult, strain: float) -> tuple[float, float]:
 
 def measurements(assignments: dict[str, float]) -> tuple[Measurement, ...]:
     """Stress and volume at one shear strain, and the stress at critical state."""
-    result = element_history("triaxial-drained", "modified_cam_clay", None, example_values(0.15, 1e-5) | assignments)
+    result = example_path(TEST, 0.15, 1e-5, assignments)
     measured_q, measured_volume = state_at(result, SHEAR_STRAIN)
     q, volume = EXAMPLE.drained_state(SHEAR_STRAIN)
-    failed = element_history("triaxial-drained", "modified_cam_clay", None, example_values(2.0, 1e-3) | assignments)
+    failed = example_path(TEST, 2.0, 1e-3, assignments)
     return (
         relative_error("q at eps_s = 0.1", "Pa", measured_q, q, BAND),
         relative_error("eps_v at eps_s = 0.1", "1", measured_volume, volume, BAND),
@@ -32,20 +32,15 @@ def measurements(assignments: dict[str, float]) -> tuple[Measurement, ...]:
     )
 
 
-def convergence(effort: Effort) -> Convergence:
-    """Error in q at the end of a path, over the strain of a step."""
-    sizes = axial_strains(effort)
-    errors = []
-    for size in sizes:
-        result = element_history("triaxial-drained", "modified_cam_clay", None, example_values(0.064, size))
-        q, _ = EXAMPLE.drained_state(float(shear_strain(result)[-1]))
-        errors.append(abs(result.deviatoric_stress[-1] - q) / q)
-    return Convergence("q", "axial strain of a step", sizes, tuple(errors), least_order=0.95)
+def error_at_the_end(result: ElementResult) -> float:
+    """In q."""
+    q, _ = EXAMPLE.drained_state(float(shear_strain(result)[-1]))
+    return float(abs(result.deviatoric_stress[-1] - q) / q)
 
 
 def measure(effort: Effort) -> Evidence:
     """The law as it is."""
-    coarse = element_history("triaxial-drained", "modified_cam_clay", None, example_values(0.15, 5e-3))
+    coarse = example_path(TEST, 0.15, 5e-3)
     strains = shear_strain(coarse)[1:]
     exact = [EXAMPLE.drained_state(float(strain)) for strain in strains]
     figure = Figure(
@@ -57,7 +52,7 @@ def measure(effort: Effort) -> Evidence:
             curve("modified_cam_clay", strains, 1e-3 * coarse.deviatoric_stress[1:]),
         ),
     )
-    return Evidence(measurements({}), (convergence(effort),), (figure,))
+    return Evidence(measurements({}), (path_convergence("q", TEST, 0.064, effort, error_at_the_end),), (figure,))
 
 
 def control(effort: Effort) -> tuple[Measurement, ...]:

@@ -2,22 +2,22 @@
 
 import numpy as np
 
-from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
+from grainlaw.materials.element.result import ElementResult
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
 from grainlaw.validation.cases.point.cam_clay_solutions import EXAMPLE
-from grainlaw.validation.cases.point.element import element_history
-from grainlaw.validation.cases.point.triaxial import axial_strains, example_values, shear_strain
+from grainlaw.validation.cases.point.triaxial import example_path, path_convergence, shear_strain
 
+TEST = "triaxial-undrained"
 BAND = 1e-4
 SHEAR_STRAIN = 0.02
 
 
 def measurements(assignments: dict[str, float]) -> tuple[Measurement, ...]:
     """P and q at one shear strain, and p at critical state."""
-    values = example_values(0.03, 2e-6) | assignments
-    result = element_history("triaxial-undrained", "modified_cam_clay", None, values)
+    result = example_path(TEST, 0.03, 2e-6, assignments)
     strains = shear_strain(result)
     p, q = EXAMPLE.undrained_state(SHEAR_STRAIN)
-    failed = element_history("triaxial-undrained", "modified_cam_clay", None, example_values(1.0, 1e-3) | assignments)
+    failed = example_path(TEST, 1.0, 1e-3, assignments)
     failure = EXAMPLE.undrained_pressure(EXAMPLE.critical_state_ratio)
     return (
         relative_error("p at eps_s = 0.02", "Pa", float(np.interp(SHEAR_STRAIN, strains, result.pressure)), p, BAND),
@@ -28,20 +28,15 @@ def measurements(assignments: dict[str, float]) -> tuple[Measurement, ...]:
     )
 
 
-def convergence(effort: Effort) -> Convergence:
-    """Error in q at the end of a path, over the strain of a step."""
-    sizes = axial_strains(effort)
-    errors = []
-    for size in sizes:
-        result = element_history("triaxial-undrained", "modified_cam_clay", None, example_values(0.024, size))
-        _, q = EXAMPLE.undrained_state(float(shear_strain(result)[-1]))
-        errors.append(abs(result.deviatoric_stress[-1] - q) / q)
-    return Convergence("q", "axial strain of a step", sizes, tuple(errors), least_order=0.95)
+def error_at_the_end(result: ElementResult) -> float:
+    """In q."""
+    _, q = EXAMPLE.undrained_state(float(shear_strain(result)[-1]))
+    return float(abs(result.deviatoric_stress[-1] - q) / q)
 
 
 def measure(effort: Effort) -> Evidence:
     """The law as it is."""
-    coarse = element_history("triaxial-undrained", "modified_cam_clay", None, example_values(0.1, 2e-3))
+    coarse = example_path(TEST, 0.1, 2e-3)
     ratios = np.linspace(0.0, EXAMPLE.critical_state_ratio, 60)
     pressures = np.array([EXAMPLE.undrained_pressure(ratio) for ratio in ratios])
     figure = Figure(
@@ -53,7 +48,7 @@ def measure(effort: Effort) -> Evidence:
             curve("modified_cam_clay", 1e-3 * coarse.pressure, 1e-3 * coarse.deviatoric_stress),
         ),
     )
-    return Evidence(measurements({}), (convergence(effort),), (figure,))
+    return Evidence(measurements({}), (path_convergence("q", TEST, 0.024, effort, error_at_the_end),), (figure,))
 
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
