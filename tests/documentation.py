@@ -4,8 +4,7 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterable, Mapping
-from itertools import groupby
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -13,35 +12,40 @@ DOCS = ROOT / "docs"
 _BLOCK = re.compile(r"^```(?P<language>\w+) (?P<use>runnable|file=(?P<name>\S+))\n(?P<body>.*?)^```$", re.M | re.S)
 
 
-def page_script(page: Path) -> str:
-    """The runnable blocks of a page, and the files that it shows, as one shell script.
-
-    Python blocks that follow one another are one program, as the cells of a notebook are.
-    """
-    blocks = _BLOCK.finditer(page.read_text(encoding="utf-8"))
-    grouped = groupby(blocks, lambda block: block["language"] == "python" and not block["name"])
-    return "set -e\n" + "".join(
-        _as_program(group) if is_python else "".join(map(_as_shell, group)) for is_python, group in grouped
-    )
-
-
-def _as_program(blocks: Iterable[re.Match[str]]) -> str:
-    return f"python - <<'END_OF_FILE'\n{''.join(block['body'] for block in blocks)}END_OF_FILE\n"
+def page_script(*pages: Path) -> str:
+    """The runnable blocks of pages, one page after the other, and the files that they show, as one shell script."""
+    text = "".join(page.read_text(encoding="utf-8") for page in pages)
+    return "set -e\n" + "".join(_as_shell(block) for block in _BLOCK.finditer(text))
 
 
 def _as_shell(block: re.Match[str]) -> str:
-    return f"cat > {block['name']} <<'END_OF_FILE'\n{block['body']}END_OF_FILE\n" if block["name"] else block["body"]
+    body = block["body"]
+    if block["name"]:
+        return f"cat > {block['name']} <<'END_OF_FILE'\n{body}END_OF_FILE\n"
+    if block["language"] == "python":
+        return f"python - <<'END_OF_FILE'\n{body}END_OF_FILE\n"
+    return body
 
 
 def run_page(
     page: Path, clone: Path, binaries: Path = Path(sys.executable).parent, settings: Mapping[str, str] | None = None
 ) -> str:
-    """Run a page in a folder that looks like the top of a clone, with a virtual environment's commands.
+    """Run a page in a folder that looks like the top of a clone; see `run_pages`."""
+    return run_pages([page], clone, binaries, settings)
+
+
+def run_pages(
+    pages: Sequence[Path],
+    clone: Path,
+    binaries: Path = Path(sys.executable).parent,
+    settings: Mapping[str, str] | None = None,
+) -> str:
+    """Run pages one after the other in a folder that looks like the top of a clone, with an environment's commands.
 
     Returns what the commands printed; fails with it if one of them fails.
     """
     clone.mkdir()
-    for name in ("scenes", "plugins", "tests", "validation"):
+    for name in ("scenes", "plugins", "tests", "validation", "materials"):
         (clone / name).symlink_to(ROOT / name)
     environment = {
         **os.environ,
@@ -51,7 +55,8 @@ def run_page(
         **(settings or {}),
     }
     done = subprocess.run(
-        ["bash", "-c", page_script(page)], cwd=clone, env=environment, capture_output=True, text=True, check=False
+        ["bash", "-c", page_script(*pages)], cwd=clone, env=environment, capture_output=True, text=True, check=False
     )
-    assert done.returncode == 0, f"{page.name}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}"
+    names = ", ".join(page.name for page in pages)
+    assert done.returncode == 0, f"{names}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}"
     return done.stdout

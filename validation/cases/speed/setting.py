@@ -15,7 +15,7 @@ END = 1.5
 WARM_UP_STEPS = 2
 
 # Lower left and upper right corner of the column [m]. Settings of `accuracy` were chosen on some of the first five
-# (docs/speed.md); the case `speed_error` judges each on another one.
+# (docs/accuracy.md); the case `speed_error` judges each on another one.
 COLUMNS: dict[str, tuple[list[float], list[float]]] = {
     "paper": ([1.45, 0.0], [1.75, 0.9]),
     "low": ([1.3, 0.0], [1.9, 0.4]),
