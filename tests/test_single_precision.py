@@ -8,7 +8,6 @@ from numba import njit
 from scenes_for_tests import BLOCK, CAM_CLAY, COLUMN, changed, simulation
 from test_laws_compiled import random_strain_rates, start
 
-from benchmarks.columns import advance_to
 from grainlaw.materials import InputError, SymmetricTensor, registry
 from grainlaw.materials.compilation import make_single_step, pointwise_law
 from grainlaw.materials.precision import PRECISIONS, as_numbers
@@ -112,7 +111,7 @@ def test_a_pile_in_single_precision_is_that_in_double():
     shapes = []
     for precision in PRECISIONS:
         case = simulation(COLUMN, {"precision": precision})
-        advance_to(case, 0.5)
+        case.advance_to(0.5)
         shapes.append(pile_shape(case.bodies, 0.0, case.grid.cell_size))
     double, single = shapes
     assert single != double
@@ -127,7 +126,7 @@ def test_laws_that_do_not_hold_are_computed_in_double():
     double = simulation(COLUMN_OF_CLAY, {"precision": "double"})
     single = simulation(COLUMN_OF_CLAY, {"precision": "single"})
     for case in (double, single):
-        advance_to(case, 0.1)
+        case.advance_to(0.1)
     (exact,), (rounded,) = double.bodies, single.bodies
     pressures = [-body.stress[0][np.argsort(body.ids)] for body in (exact, rounded)]
     np.testing.assert_allclose(pressures[1], pressures[0], rtol=1e-2, atol=1e-4 * pressures[0].max())
