@@ -49,8 +49,7 @@ def test_frequency_of_a_sampled_cosine():
 
 
 def test_a_turned_stress_keeps_its_invariants():
-    turned = turned_stress(0.7)
-    values, start = list(turned.values()), list(START.values())
+    values, start = turned_stress(0.7), START
     assert sum(values[:3]) == pytest.approx(sum(start[:3]))
     assert values[0] * values[1] - values[3] ** 2 == pytest.approx(start[0] * start[1] - start[3] ** 2)
 
