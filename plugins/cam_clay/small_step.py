@@ -9,6 +9,10 @@ unknowns, the plastic volume strain x and the relaxation N = 6 G Lambda/M^2 of t
 where G = (g/kappa) p m is the mean of G(p) over the step, and m the mean of p over its final value. A fixed number of
 iterations is enough for steps as small as explicit dynamics takes. Where it is not, the result says so, and the
 bracketed return has to be called.
+
+Why there are two: a step of a collapse takes 2.9 times as long with the bracketed return alone, and 2.1 times with both
+in one function. This one with substeps did not fail either (20,000 increments up to 20 %), but without `fused`, which
+plain Python does not have, the step takes 7 to 11 % longer.
 """
 
 from collections.abc import Callable
