@@ -143,8 +143,9 @@ def check_law(law: Law) -> None:
     if not law.summary.strip():
         raise DeclarationError("no summary")
     declared_fields(law.parameters, Parameter)
+    state_variables = declared_fields(law.state, StateVariable)
     for name in law.lower_bounds:
-        if name not in declared_fields(law.state, StateVariable):
+        if name not in state_variables:
             raise DeclarationError(f"lower_bounds names '{name}', which is no state variable")
     for name, parameter_set in law.parameter_sets.items():
         _check_one_step(law, name, parameter_set)

@@ -10,7 +10,7 @@ LAW = '''
 
 from typing import Annotated, NamedTuple
 
-from grainlaw.materials import Law, Parameter, ParameterSet, SymmetricTensor, hookimpl, pointwise, scaled
+from grainlaw.materials import Law, Parameter, ParameterSet, SymmetricTensor, hookimpl, pointwise
 {above}
 
 class Parameters(NamedTuple):
@@ -26,7 +26,7 @@ def initial_state(stress, density, parameters):
 
 
 def update(stress, strain_rate, density, state, parameters, dt):
-    return scaled(strain_rate, {factor} * parameters.stiffness * dt), state
+    return {factor} * parameters.stiffness * dt * strain_rate, state
 
 
 def sound_speed(stress, density, state, parameters):
