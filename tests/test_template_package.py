@@ -103,7 +103,7 @@ def test_new_law_fails_its_test_until_it_is_written_and_then_passes_every_check(
         (["mu_i_lc"], "the name 'mu_i_lc' is taken by grainlaw"),
         (["random"], "the name 'random' is that of another Python module"),
         (["numpy"], "the name 'numpy' is that of another Python module"),
-        (["mpm_core"], "the name 'mpm_core' is that of another Python module"),
+        (["grainlaw"], "the name 'grainlaw' is that of another Python module"),
         (["green_sand", "--out", "/dev/null/green"], "/dev/null/green cannot be written: Not a directory"),
         (["green_sand", "--out", "taken"], "taken exists already; choose another folder with --out"),
     ],
