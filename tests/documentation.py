@@ -4,7 +4,8 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import groupby
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -13,18 +14,23 @@ _BLOCK = re.compile(r"^```(?P<language>\w+) (?P<use>runnable|file=(?P<name>\S+))
 
 
 def page_script(*pages: Path) -> str:
-    """The runnable blocks of pages, one page after the other, and the files that they show, as one shell script."""
-    text = "".join(page.read_text(encoding="utf-8") for page in pages)
-    return "set -e\n" + "".join(_as_shell(block) for block in _BLOCK.finditer(text))
+    """The runnable blocks of pages, one page after the other, and the files that they show, as one shell script.
+
+    Python blocks that follow one another are one program, as the cells of a notebook are.
+    """
+    blocks = (block for page in pages for block in _BLOCK.finditer(page.read_text(encoding="utf-8")))
+    grouped = groupby(blocks, lambda block: block["language"] == "python" and not block["name"])
+    return "set -e\n" + "".join(
+        _as_program(group) if is_python else "".join(map(_as_shell, group)) for is_python, group in grouped
+    )
+
+
+def _as_program(blocks: Iterable[re.Match[str]]) -> str:
+    return f"python - <<'END_OF_FILE'\n{''.join(block['body'] for block in blocks)}END_OF_FILE\n"
 
 
 def _as_shell(block: re.Match[str]) -> str:
-    body = block["body"]
-    if block["name"]:
-        return f"cat > {block['name']} <<'END_OF_FILE'\n{body}END_OF_FILE\n"
-    if block["language"] == "python":
-        return f"python - <<'END_OF_FILE'\n{body}END_OF_FILE\n"
-    return body
+    return f"cat > {block['name']} <<'END_OF_FILE'\n{block['body']}END_OF_FILE\n" if block["name"] else block["body"]
 
 
 def run_page(

@@ -207,6 +207,7 @@ def test_pages_show_commands_to_run():
         "element-tests",
         "output",
         "physics-notes",
+        "python",
         "scenes",
         "unified-law",
         "validation",
