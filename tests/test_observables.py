@@ -10,7 +10,7 @@ from grainlaw.mpm_core.output.observables import pile_shape
 
 def body(x, y, point_mass=2.0, density=1000.0):
     places = np.array([x, y], dtype=float)
-    return SimpleNamespace(places=places, count=places.shape[1], point_mass=point_mass, initial_density=density)
+    return SimpleNamespace(positions=places, count=places.shape[1], point_mass=point_mass, initial_density=density)
 
 
 def evenly(count, width=1.0, height=0.5, **keywords):
