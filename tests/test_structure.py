@@ -94,14 +94,6 @@ def test_public_names_exist_once():
     assert [name for name in materials.__all__ if not hasattr(materials, name)] == []
 
 
-@pytest.mark.parametrize("folder", ["materials", "mpm_core", "plugins", "validation"])
-def test_a_folder_under_its_old_name_says_what_to_import(folder):
-    done = subprocess.run(
-        [sys.executable, "-c", f"import {folder}"], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-    assert done.stderr.splitlines()[-1] == f"ImportError: import grainlaw.{folder}, not {folder}"
-
-
 def test_numbers_of_rows_stay_in_the_core():
     files = [path for folder in (*ALLOWED, "benchmarks") if folder != "mpm_core" for path in modules(folder)]
     used = {name for path in files for module, name in imports(path) if module == "grainlaw.mpm_core.layout"}
