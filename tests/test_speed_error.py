@@ -46,7 +46,9 @@ def test_references_have_the_transfer_and_points_with_which_piles_of_their_law_c
 
 
 def test_the_square_costs_more_and_errs_less_on_finer_cells():
-    coarse, fine = (cost_and_error(ExactSetting(cells, 4, 0.4, "affine_flip", "quadratic", "double")) for cells in (8, 16))
+    coarse, fine = (
+        cost_and_error(ExactSetting(cells, 4, 0.4, "affine_flip", "quadratic", "double")) for cells in (8, 16)
+    )
     assert coarse is not None
     assert fine is not None
     assert fine[1] < 0.4 * coarse[1]
