@@ -45,9 +45,33 @@ def _stripe_starts(before, narrowest):  # type: ignore[no-untyped-def]
     for together in STRIPES_IN_TURN:
         for count in range(most - most % together, 0, -together):
             limits = _equal_parts(before, count)
-            if np.diff(limits).min() >= narrowest:
-                return before[limits]
-    return before[np.arange(most + 1) * columns // most]
+            if _are_wide(limits, narrowest):
+                return _at(before, limits)
+    limits = np.empty(most + 1, np.int64)
+    for part in range(most + 1):
+        limits[part] = part * columns // most
+    return _at(before, limits)
+
+
+# Loops: what NumPy has for them takes the compiler longer than the rest of the sort.
+@njit(cache=True)
+@named(CORE_MARK)
+def _are_wide(limits, narrowest):  # type: ignore[no-untyped-def]
+    """Whether all parts have so many columns."""
+    for part in range(len(limits) - 1):
+        if limits[part + 1] - limits[part] < narrowest:
+            return False
+    return True
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def _at(values, positions):  # type: ignore[no-untyped-def]
+    """The values at some positions."""
+    found = np.empty(len(positions), values.dtype)
+    for k in range(len(positions)):
+        found[k] = values[positions[k]]
+    return found
 
 
 @njit(cache=True)
