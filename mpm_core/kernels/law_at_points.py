@@ -90,19 +90,19 @@ def _with_variable(
 
 
 def make_apply_law(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
-    """The loop over points that calls a law; `ties` are compressive strains besides those of the motion."""
+    """The loop over points that calls a law; `coupling` are compressive strains besides those of the motion."""
     if law.small_step is None:
         return _make_update(law, mark)
     update, take_small_steps = _make_update(law, mark), _make_small_steps(law, law.small_step, mark)
 
     @register_jitable
     @named(mark)
-    def apply_law(rows, first, last, ties, parameters, dt):  # type: ignore[no-untyped-def]
+    def apply_law(rows, first, last, coupling, parameters, dt):  # type: ignore[no-untyped-def]
         pending = np.empty(last - first, np.int64)
-        take_small_steps(rows, first, last, ties, parameters, dt, pending)
+        take_small_steps(rows, first, last, coupling, parameters, dt, pending)
         for p in range(first, last):
             if pending[p - first]:
-                update(rows, p, p + np.uint64(1), ties[p - first :], parameters, dt)
+                update(rows, p, p + np.uint64(1), coupling[p - first :], parameters, dt)
 
     return apply_law
 
@@ -111,7 +111,7 @@ class PointAccess(NamedTuple):
     """What compiled code reads of a point, as numbers of one kind.
 
     stress       (rows, p) -> the stress [Pa]
-    strain_rate  (rows, p, tie, dt) -> that of the motion, less a compressive strain [1] over the step [1/s]
+    strain_rate  (rows, p, coupling, dt) -> that of the motion, less a compressive strain [1] over the step [1/s]
     """
 
     stress: Callable[..., Any]
@@ -132,10 +132,10 @@ def point_access(precision: str) -> PointAccess:
 
     @adaptable
     @named(precision)
-    def strain_rate_at(rows, p, tie, dt):  # type: ignore[no-untyped-def]
+    def strain_rate_at(rows, p, coupling, dt):  # type: ignore[no-untyped-def]
         shear = 0.5 * (number(rows[LXY][p]) + number(rows[LYX][p]))
         motion = SymmetricTensor(number(rows[LXX][p]), number(rows[LYY][p]), nothing, shear, nothing, nothing)
-        return motion + isotropic(number(tie) * (-1.0 / (3.0 * dt)))
+        return motion + isotropic(number(coupling) * (-1.0 / (3.0 * dt)))
 
     return PointAccess(stress_at, in_precision(strain_rate_at, precision))
 
@@ -152,16 +152,16 @@ def _make_update(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
 
     @register_jitable(forceinline=True)
     @named(mark)
-    def update_one(p, rows, first, ties, law_parameters, dt):  # type: ignore[no-untyped-def]
-        stress, strain_rate = stress_at(rows, p), strain_rate_at(rows, p, ties[p - first], dt)
+    def update_one(p, rows, first, coupling, law_parameters, dt):  # type: ignore[no-untyped-def]
+        stress, strain_rate = stress_at(rows, p), strain_rate_at(rows, p, coupling[p - first], dt)
         stress, state = law_update(stress, strain_rate, number(rows[DENSITY][p]), load(rows, p), law_parameters, dt)
         _put_stress(rows, p, stress)
         store(rows, p, state)
 
     @register_jitable
     @named(mark)
-    def update(rows, first, last, ties, parameters, dt):  # type: ignore[no-untyped-def]
-        loop_over_points(first, last, update_one, (rows, first, ties, parameter_class(*parameters), number(dt)))
+    def update(rows, first, last, coupling, parameters, dt):  # type: ignore[no-untyped-def]
+        loop_over_points(first, last, update_one, (rows, first, coupling, parameter_class(*parameters), number(dt)))
 
     return update
 
@@ -174,8 +174,8 @@ def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: s
 
     @register_jitable(forceinline=True)
     @named(mark)
-    def take_one(p, rows, first, ties, law_parameters, dt, pending):  # type: ignore[no-untyped-def]
-        stress, strain_rate = stress_at(rows, p), strain_rate_at(rows, p, ties[p - first], dt)
+    def take_one(p, rows, first, coupling, law_parameters, dt, pending):  # type: ignore[no-untyped-def]
+        stress, strain_rate = stress_at(rows, p), strain_rate_at(rows, p, coupling[p - first], dt)
         state, density = load(rows, p), number(rows[DENSITY][p])
         stress, state, succeeded = small_step(stress, strain_rate, density, state, law_parameters, dt)
         pending[p - first] = not succeeded
@@ -185,8 +185,8 @@ def _make_small_steps(law: PointwiseLaw, small_step: Callable[..., Any], mark: s
 
     @register_jitable
     @named(mark)
-    def take_small_steps(rows, first, last, ties, parameters, dt, pending):  # type: ignore[no-untyped-def]
-        arguments = rows, first, ties, parameter_class(*parameters), number(dt), pending
+    def take_small_steps(rows, first, last, coupling, parameters, dt, pending):  # type: ignore[no-untyped-def]
+        arguments = rows, first, coupling, parameter_class(*parameters), number(dt), pending
         loop_over_points(first, last, take_one, arguments)
 
     return take_small_steps
