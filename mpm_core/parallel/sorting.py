@@ -45,7 +45,7 @@ def _stripe_starts(before, narrowest):  # type: ignore[no-untyped-def]
     for together in STRIPES_IN_TURN:
         for count in range(most - most % together, 0, -together):
             limits = _equal_parts(before, count)
-            if _are_wide(limits, narrowest):
+            if _fewest_columns(limits) >= narrowest:
                 return _at(before, limits)
     limits = np.empty(most + 1, np.int64)
     for part in range(most + 1):
@@ -56,12 +56,12 @@ def _stripe_starts(before, narrowest):  # type: ignore[no-untyped-def]
 # Loops: what NumPy has for them takes the compiler longer than the rest of the sort.
 @njit(cache=True)
 @named(CORE_MARK)
-def _are_wide(limits, narrowest):  # type: ignore[no-untyped-def]
-    """Whether all parts have so many columns."""
+def _fewest_columns(limits):  # type: ignore[no-untyped-def]
+    """The columns of the narrowest part."""
+    fewest = limits[-1]
     for part in range(len(limits) - 1):
-        if limits[part + 1] - limits[part] < narrowest:
-            return False
-    return True
+        fewest = min(fewest, limits[part + 1] - limits[part])
+    return fewest
 
 
 @njit(cache=True)
