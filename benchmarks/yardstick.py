@@ -8,7 +8,7 @@ What a first attempt does not do, and neither does this: sort points, keep each 
 anything between the passes that the next step can do without.
 
 What it saves against the library, so that the ratio is rather too hard than too kind: three values per node in place of
-eight (it neither keeps the unresolved velocity nor ties the volumes of points to one another), Jaumann's rate to first
+eight (it neither keeps the unresolved velocity nor couples the volumes of points), Jaumann's rate to first
 order for the rotation, no energies, no shear strain, no check of any result, no walls between nodes, one body, no
 frames.
 

@@ -45,14 +45,14 @@ def test_the_width_of_a_node_is_the_integral_of_its_shape_function_over_the_doma
 def test_a_lattice_that_fills_the_domain_is_not_crowded():
     case = simulation(BLOCK, {**LOOSE, "body.0.shape": FILLING})
     case.step(INSTANT)
-    (x, y), crowding = case.bodies[0].positions, case.bodies[0].overfill
+    (x, y), overfill = case.bodies[0].positions, case.bodies[0].overfill
     # Two points per cell and axis do not integrate the changed weights at a wall exactly.
     near_wall = (np.minimum(x, 1.0 - x) < 0.25) | (np.minimum(y, 0.8 - y) < 0.25)
-    assert np.abs(crowding[~near_wall]).max() < 1e-9
-    assert np.abs(crowding).max() < 0.03
+    assert np.abs(overfill[~near_wall]).max() < 1e-9
+    assert np.abs(overfill).max() < 0.03
 
 
-def test_crowding_is_the_excess_of_volume_and_a_free_surface_has_none():
+def test_overfill_is_the_excess_of_volume_and_a_free_surface_has_none():
     assert overfill_of(1.25, 1.0) == 0.25
     assert overfill_of(0.95, 1.0) == pytest.approx(-0.05)
     assert overfill_of(NEARLY_FULL - 0.01, 1.0) == 0.0
@@ -90,15 +90,15 @@ def test_the_pressures_of_a_sheared_block_even_out_and_its_volume_stays():
 
 def test_material_that_carries_tension_is_left_alone():
     results = []
-    for mean_pressure, crowding in ((0.0, 0.0), (1e3, 0.5)):
+    for mean_pressure, overfill in ((0.0, 0.0), (1e3, 0.5)):
         (body,) = simulation(BLOCK).bodies
-        body.velocity_gradient[0, 1], body.neighbour_mean, body.overfill = 5.0, mean_pressure, crowding
+        body.velocity_gradient[0, 1], body.neighbour_mean, body.overfill = 5.0, mean_pressure, overfill
         body.update_stress(1e-3, 1e-3, 0.1)
         results.append(np.vstack([body.stress, body.density]))
     np.testing.assert_array_equal(*results)
 
 
-def test_crowded_grains_are_squeezed():
+def test_crowded_grains_are_compressed():
     (body,) = simulation(BLOCK, LOOSE).bodies
     body.velocity_gradient[0, 1], body.overfill = 5.0, 0.2
     body.neighbour_mean = 1000.0
