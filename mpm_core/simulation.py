@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grainlaw.materials import SimulationError
+from grainlaw.materials import InputError, SimulationError
 from grainlaw.mpm_core.failures import LARGEST_INCREMENT, failure_outside, failure_too_small, failure_unsound
 from grainlaw.mpm_core.grid.active_nodes import ActiveNodes, find_active_nodes, no_active_nodes
 from grainlaw.mpm_core.grid.grid import Grid
@@ -142,7 +142,12 @@ class Simulation:
             body.update_stress(dt, coupled_time, exchange, self.threads)
 
     def advance_to(self, time: float) -> None:
-        """Step to a time [s], with the steps of the scene. Raises SimulationError as `step` and `next_step` do."""
+        """Step to a time [s], with the steps of the scene.
+
+        Raises InputError for a time that is past or not finite, and SimulationError as `step` and `next_step` do.
+        """
+        if not self.time <= time < math.inf:
+            raise InputError(f"advance_to({time:g}): allowed are times from the present one, {self.time:g} s, on")
         for _ in self.steps_to(time):
             pass
 

@@ -7,6 +7,7 @@ import sys
 import pytest
 from scenes_for_tests import (
     BLOCK,
+    CAM_CLAY,
     COLUMN,
     FALLING_SPRING,
     call_command_line,
@@ -190,6 +191,27 @@ def test_the_installed_command_gives_one_line_and_exit_code_2(tmp_path):
     assert done.returncode == 2
     assert done.stdout == ""
     assert re.fullmatch(r"error: .*scene\.toml: grid\.cell_size = -1\.0: .*\n", done.stderr)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--resume", "--overwrite"), "--resume goes on with the run there, --overwrite begins it again; choose one"),
+        (("--set", "grid.cell_size=1e-9"), "cells do not fit into memory"),
+    ],
+)
+def test_what_cannot_be_run_is_refused(tmp_path, monkeypatch, capsys, arguments, message):
+    path = write_scene(tmp_path / "column.toml", COLUMN, QUICK)
+    assert call_command_line(monkeypatch, "run", path, "--out", tmp_path / "out", *arguments) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_plan_takes_the_steps_of_a_run(tmp_path, monkeypatch):
+    """Forty steps as long as the first would break what stiffens."""
+    clay = {"material": {"modified_cam_clay": CAM_CLAY}, "body.0.material": "modified_cam_clay"}
+    stressless = {**clay, "body.0.initial_stress": {"kind": "none"}, "grid.cell_size": 0.1, "time.end": 0.1}
+    path = write_scene(tmp_path / "column.toml", COLUMN, stressless)
+    assert call_command_line(monkeypatch, "plan", path) == 0
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])

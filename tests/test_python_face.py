@@ -1,5 +1,6 @@
 """`import grainlaw as gl`: what scripts and notebooks get, and what they are told."""
 
+import math
 import subprocess
 import sys
 from html import unescape
@@ -203,3 +204,14 @@ def test_a_simulation_is_led_to_a_time_and_shown():
     assert set(after.point_data.keys()) == {"velocity", "pressure"}
     assert np.array_equal(after.points, simulation.frame().positions.astype(after.points.dtype))
     assert after.points[:, 1].mean() < before.points[:, 1].mean()
+
+
+def test_a_folder_without_a_run_is_refused(tmp_path):
+    with pytest.raises(gl.InputError, match="holds no run"):
+        gl.read_run(tmp_path)
+
+
+@pytest.mark.parametrize("time", [-1.0, math.nan, math.inf])
+def test_a_simulation_goes_to_no_time_that_is_past_or_not_finite(time):
+    with pytest.raises(gl.InputError, match="allowed are times from the present one, 0 s, on"):
+        gl.Simulation(BLOCK).advance_to(time)

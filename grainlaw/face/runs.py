@@ -12,7 +12,7 @@ from grainlaw.face.scenes import SceneSource, as_scene
 from grainlaw.face.tables import data_frame
 from grainlaw.materials.errors import InputError, nearest_name
 from grainlaw.mpm_core.output.frame import Frame
-from grainlaw.mpm_core.output.history import HISTORY_COLUMNS
+from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, HISTORY_NAME
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.output.summary import RunSummary
 
@@ -25,12 +25,14 @@ if TYPE_CHECKING:
 class Run:
     """What a run left in its folder; each part is read when it is first asked for.
 
-    Raises InputError if there is no such folder, and on access if a part is missing or broken.
+    Raises InputError if there is no run in such a folder, and on access if a part is missing or broken.
     """
 
     def __init__(self, folder: str | Path) -> None:
         self.folder = RunFolder(Path(folder))
         """The folder opened for reading."""
+        if not (self.path / HISTORY_NAME).is_file():
+            raise InputError(f"{self.path} holds no run")
 
     @property
     def path(self) -> Path:

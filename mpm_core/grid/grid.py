@@ -82,6 +82,10 @@ class Grid:
 def _aligned_zeros(count: int, number: type[np.floating[Any]]) -> NDArray[Any]:
     """Zeroed numbers from the start of a cache line on, of which a node fills one, or half; no memory is touched."""
     line = CACHE_LINE // np.dtype(number).itemsize
-    buffer = np.zeros(count + line, number)
+    try:
+        buffer = np.zeros(count + line, number)
+    except ValueError as error:
+        # More than an array may hold, which is more than there is of memory.
+        raise MemoryError(f"{count} numbers") from error
     start = (-buffer.ctypes.data % CACHE_LINE) // buffer.itemsize
     return buffer[start : start + count]

@@ -60,7 +60,7 @@ def plan(scene: Scene, threads: int = 1) -> Plan:
     interval = scene.output.interval or scene.time.end / FRAMES_BY_DEFAULT
     stops = math.ceil(scene.time.end / interval - 1e-9)
     output_time = _output_time(simulation, stops + 1)
-    seconds = _seconds_per_step(simulation, min(step, stable))
+    seconds = _seconds_per_step(simulation)
     memory_bytes = peak_memory()
     played = rehearsals(scene, points, threads)
     seconds += played[-1].growth * points
@@ -111,10 +111,11 @@ def _in_single(simulation: Simulation) -> list[str]:
     return ["half of the memory for points and for active nodes", *laws]
 
 
-def _seconds_per_step(simulation: Simulation, dt: float) -> float:
-    """Median of some steps, after those that compile or load the kernels."""
+def _seconds_per_step(simulation: Simulation) -> float:
+    """Median of some steps as a run takes them, after those that compile or load the kernels."""
     durations = []
     for _ in range(FIRST_STEPS + TIMED_STEPS):
+        dt, _ = simulation.next_step(simulation.time + simulation.scene.time.end)
         started = time.perf_counter()
         simulation.step(dt)
         durations.append(time.perf_counter() - started)

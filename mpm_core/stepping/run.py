@@ -31,6 +31,8 @@ def run(
     Raises InputError for what cannot be run or would overwrite a run, and SimulationError, naming the time, the point
     and the last checkpoint, where the computation goes wrong.
     """
+    if resume and overwrite:
+        raise InputError(f"{folder}: --resume goes on with the run there, --overwrite begins it again; choose one of them")
     started = time.perf_counter()
     simulation = built_simulation(scene, threads)
     _refuse_impossible_steps(simulation)
