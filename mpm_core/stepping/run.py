@@ -32,7 +32,8 @@ def run(
     and the last checkpoint, where the computation goes wrong.
     """
     if resume and overwrite:
-        raise InputError(f"{folder}: --resume goes on with the run there, --overwrite begins it again; choose one of them")
+        choices = "--resume goes on with the run there, --overwrite begins it again; choose one"
+        raise InputError(f"{folder}: {choices}")
     started = time.perf_counter()
     simulation = built_simulation(scene, threads)
     _refuse_impossible_steps(simulation)
