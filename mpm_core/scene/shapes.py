@@ -1,15 +1,16 @@
 """Shapes of bodies, as a scene declares them, and the regular lattice of points that fills one."""
 
-import contextlib
-import io
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
 
-Points = NDArray[np.float64]
+from grainlaw.mpm_core.scene.mesh_file import read_cells
+from grainlaw.mpm_core.scene.outline import Points, areas, closed_edges, enclosed, enclosed_area, off_edges, outer_edges
+
+SAME_AREA = 1e-6  # relative; interface nodes of two parts may differ by the digits of the file
 Corner = Annotated[tuple[float, float], Field(strict=False)]
 
 
@@ -48,7 +49,8 @@ class Rectangle(Shape):
 
     def contains(self, points: Points) -> NDArray[np.bool_]:
         """Inside or on the lower and left edges."""
-        inside = (points >= np.array(self.lower)) & (points < np.array(self.upper))
+        shifted = off_edges(points)
+        inside = (shifted >= np.array(self.lower)) & (shifted < np.array(self.upper))
         return np.asarray(inside.all(axis=1))
 
 
@@ -70,10 +72,24 @@ class Disc(Shape):
 
 
 class Polygon(Shape):
-    """A simple polygon."""
+    """A simple polygon, its corners in either order."""
 
     kind: Literal["polygon"]
     vertices: list[Corner] = Field(min_length=3, description="corners in order [m]")
+
+    @model_validator(mode="after")
+    def _is_simple(self) -> "Polygon":
+        from shapely import Polygon as Ring
+        from shapely import is_valid, is_valid_reason
+
+        ring = Ring(self.vertices)
+        if not is_valid(ring):
+            what, _, place = is_valid_reason(ring).partition("[")
+            if "intersection" in what.lower():
+                raise ValueError(f"the polygon crosses or touches itself at ({', '.join(place.strip(']').split())})")
+        if not ring.area > 0:
+            raise ValueError("the polygon has no area")
+        return self
 
     def bounds(self) -> tuple[Corner, Corner]:
         """The box around the corners."""
@@ -81,10 +97,8 @@ class Polygon(Shape):
         return tuple(corners.min(axis=0)), tuple(corners.max(axis=0))
 
     def contains(self, points: Points) -> NDArray[np.bool_]:
-        """Inside by the even-odd rule."""
-        from matplotlib.path import Path as PlanePath
-
-        return PlanePath(np.array(self.vertices)).contains_points(points)
+        """Inside or on the lower and left edges."""
+        return enclosed(points, outer_edges(closed_edges(np.array([self.vertices]))))
 
 
 class MeshRegion(Shape):
@@ -92,51 +106,27 @@ class MeshRegion(Shape):
 
     kind: Literal["mesh"]
     file: Path = Field(strict=False, description="mesh file; a relative path counts from the scene file")
-    _corners: Points = PrivateAttr()
-    _cell_finder: Any = PrivateAttr()
+    group: str | None = Field(default=None, description="physical group of a gmsh file")
+    _outline: Points = PrivateAttr()
 
     @model_validator(mode="after")
     def _read(self) -> "MeshRegion":
-        from matplotlib.tri import Triangulation
-
-        mesh = _read_mesh(self.file)
-        cells = mesh.cells_dict
-        parts = [cells["triangle"]] if "triangle" in cells else []
-        if "quad" in cells:
-            parts += [cells["quad"][:, [0, 1, 2]], cells["quad"][:, [0, 2, 3]]]
-        if not parts:
-            raise ValueError(f"mesh file {self.file} holds no triangles or quadrilaterals")
-        triangles = np.concatenate(parts)
-        nodes = np.asarray(mesh.points[:, :2], dtype=float)
-        self._corners = nodes[np.unique(triangles)]
-        try:
-            self._cell_finder = Triangulation(nodes[:, 0], nodes[:, 1], triangles).get_trifinder()
-        except (RuntimeError, ValueError) as error:
-            raise ValueError(f"the cells of mesh file {self.file} overlap or have no area") from error
+        cells = read_cells(self.file, self.group)
+        self._outline = outer_edges(np.concatenate([closed_edges(block) for block in cells]))
+        sizes = np.concatenate([areas(block) for block in cells])
+        twice = sizes.sum() - enclosed_area(self._outline)
+        if not (sizes.min() > 0 and twice <= min(SAME_AREA * sizes.sum(), 0.5 * sizes.min())):
+            raise ValueError(f"the cells of mesh file {self.file} overlap or have no area")
         return self
 
     def bounds(self) -> tuple[Corner, Corner]:
-        """The box around the nodes that the cells use."""
-        return tuple(self._corners.min(axis=0)), tuple(self._corners.max(axis=0))
+        """The box around the cells."""
+        corners = self._outline.reshape(-1, 2)
+        return tuple(corners.min(axis=0)), tuple(corners.max(axis=0))
 
     def contains(self, points: Points) -> NDArray[np.bool_]:
-        """Inside any cell."""
-        return np.asarray(self._cell_finder(points[:, 0], points[:, 1])) >= 0
-
-
-def _read_mesh(file: Path) -> Any:
-    """The mesh of a file. Raises ValueError in one line: meshio itself prints several and leaves the process."""
-    import meshio
-
-    if not file.is_file():
-        raise ValueError(f"there is no mesh file {file}")
-    try:
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-            return meshio.read(file)
-    except meshio.ReadError as error:
-        raise ValueError(f"cannot read mesh file {file}: {error}") from error
-    except (Exception, SystemExit) as error:  # meshio raises whatever its parser meets
-        raise ValueError(f"cannot read mesh file {file}: it is no valid {file.suffix} file") from error
+        """Inside any cell, or on the lower and left edges of the region."""
+        return enclosed(points, self._outline)
 
 
 AnyShape = Annotated[Rectangle | Disc | Polygon | MeshRegion, Field(discriminator="kind")]

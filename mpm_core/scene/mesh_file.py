@@ -1,0 +1,166 @@
+"""The cells of a mesh file: their corners in the plane, and the groups they belong to."""
+
+import contextlib
+import io
+from collections import defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Points = NDArray[np.float64]
+Groups = dict[str, list[NDArray[np.bool_]]]
+
+# Corners of a cell, and nodes between two of them; nodes inside a cell do not matter.
+OUTLINES = {
+    "triangle": (3, 0),
+    "triangle6": (3, 1),
+    "triangle7": (3, 1),
+    "triangle10": (3, 2),
+    "quad": (4, 0),
+    "quad8": (4, 1),
+    "quad9": (4, 1),
+}
+NO_AREA = ("vertex", "line")
+FLAT = 1e-9  # of the size of a mesh
+
+
+def read_cells(file: Path, group: str | None) -> list[Points]:
+    """The outlines of the cells of a group, one array of shape (cells, nodes, 2) [m] for each kind of cell.
+
+    Raises ValueError, in one line, for a file that is no mesh of the plane and for a group that it does not hold.
+    """
+    mesh = _read_mesh(file)
+    kinds = [block.type for block in mesh.cells]
+    strange = sorted({kind for kind in kinds if kind not in OUTLINES and not kind.startswith(NO_AREA)})
+    if strange:
+        raise ValueError(f"mesh file {file} holds cells of kind {', '.join(strange)}; known are {', '.join(OUTLINES)}")
+    if not any(kind in OUTLINES for kind in kinds):
+        raise ValueError(f"mesh file {file} holds no triangles or quadrilaterals")
+    chosen = _chosen(file, mesh, group)
+    blocks = []
+    for block, selected in zip(mesh.cells, chosen, strict=True):
+        if block.type in OUTLINES and selected.any():
+            nodes = np.asarray(block.data)[selected][:, _around(*OUTLINES[block.type])]
+            if nodes.min() < 0 or nodes.max() >= len(mesh.points):
+                raise ValueError(f"mesh file {file} has cells of nodes that it does not hold")
+            blocks.append(mesh.points[nodes])
+    return _in_plane(file, blocks)
+
+
+def _around(corners: int, between: int) -> list[int]:
+    """The nodes of a cell in their order around it; a file lists the corners first, then those of each edge."""
+    nodes = []
+    for corner in range(corners):
+        first = corners + corner * between
+        nodes += [corner, *range(first, first + between)]
+    return nodes
+
+
+def _in_plane(file: Path, blocks: list[Points]) -> list[Points]:
+    """The blocks without their third coordinate, which must be the same everywhere."""
+    nodes = np.concatenate([block.reshape(-1, block.shape[2]) for block in blocks])
+    if not np.isfinite(nodes).all():
+        raise ValueError(f"mesh file {file} has coordinates that are not finite")
+    size = np.ptp(nodes, axis=0)
+    if len(size) > 2 and size[2] > FLAT * size.max():
+        low, high = nodes[:, 2].min(), nodes[:, 2].max()
+        raise ValueError(
+            f"mesh file {file} is a surface in space (z from {low:g} to {high:g} m); a body lies in the x-y plane"
+        )
+    return [np.asarray(block[:, :, :2], dtype=float) for block in blocks]
+
+
+def _chosen(file: Path, mesh: Any, group: str | None) -> list[NDArray[np.bool_]]:
+    """Which cells of each block belong to the group; all of them if the file has no more than one."""
+    groups = _groups(mesh)
+    names = ", ".join(f'"{name}"' for name in groups)
+    if group is None:
+        if len(groups) > 1:
+            raise ValueError(f"mesh file {file} has several groups; choose one with group = ..., of {names}")
+        return [np.ones(len(block.data), dtype=bool) for block in mesh.cells]
+    if group not in groups:
+        raise ValueError(f'mesh file {file} has no cells of a group "{group}"; it has {names or "no groups"}')
+    return groups[group]
+
+
+def _groups(mesh: Any) -> Groups:
+    """The physical groups that hold cells with an area; one without a name is known by its number."""
+    tags = mesh.cell_data.get("gmsh:physical", [np.zeros(len(block.data), dtype=int) for block in mesh.cells])
+    used = {
+        int(tag)
+        for block, values in zip(mesh.cells, tags, strict=True)
+        if block.type in OUTLINES
+        for tag in np.unique(values)
+    }
+    found: Groups = {}
+    for name, (tag, dimension) in mesh.field_data.items():
+        if dimension != 2:
+            continue
+        used.discard(int(tag))
+        if name in mesh.cell_sets:
+            members = [
+                np.isin(np.arange(len(block.data)), chosen)
+                for block, chosen in zip(mesh.cells, mesh.cell_sets[name], strict=True)
+            ]
+        else:
+            members = [np.asarray(values) == tag for values in tags]
+        found[name] = members
+    for tag in sorted(used - {0}):
+        found[str(tag)] = [np.asarray(values) == tag for values in tags]
+    with_area = [block.type in OUTLINES for block in mesh.cells]
+    return {
+        name: members
+        for name, members in found.items()
+        if any(chosen.any() for chosen, wide in zip(members, with_area, strict=True) if wide)
+    }
+
+
+def _read_mesh(file: Path) -> Any:
+    """The mesh of a file. Raises ValueError in one line: meshio itself prints several and leaves the process."""
+    import meshio
+
+    if not file.is_file():
+        raise ValueError(f"there is no mesh file {file}")
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), _entities_without_group():
+            return meshio.read(file)
+    except meshio.ReadError as error:
+        raise ValueError(f"cannot read mesh file {file}: {_one_line(str(error))}") from error
+    except (Exception, SystemExit) as error:  # meshio raises whatever its parser meets
+        reason = _one_line(said.getvalue()) if isinstance(error, SystemExit) else f"{type(error).__name__}: {error}"
+        raise ValueError(
+            f"cannot read mesh file {file}: it is no valid {file.suffix} file ({_one_line(reason)})"
+        ) from error
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())[:200]
+
+
+@contextlib.contextmanager
+def _entities_without_group() -> Iterator[None]:
+    """Let meshio read an MSH 4.1 file where only some entities are listed or have a physical group.
+
+    It lists the groups' numbers of those alone and then refuses its own list; the names are in its cell sets.
+    """
+    from meshio.gmsh import _gmsh41
+
+    whole, read_entities = _gmsh41.Mesh, _gmsh41._read_entities
+
+    def consistent(points: Any, cells: Any, *, cell_data: dict[str, Any], **rest: Any) -> Any:
+        complete = {key: values for key, values in cell_data.items() if len(values) == len(cells)}
+        return whole(points, cells, cell_data=complete, **rest)
+
+    def any_entity(*arguments: Any) -> tuple[Any, ...]:
+        tables = read_entities(*arguments)
+        return tuple(tuple(defaultdict(list, tags) for tags in table) for table in tables)
+
+    _gmsh41.Mesh, _gmsh41._read_entities = consistent, any_entity
+    try:
+        yield
+    finally:
+        _gmsh41.Mesh, _gmsh41._read_entities = whole, read_entities
