@@ -80,6 +80,9 @@ def _judge(folders: list[Path], dem: list[Path], out: Path | None) -> None:
     if out is not None:
         prepare(out)
     ensemble, judgements = judged_runs(folders, dem)
+    for run in ensemble.runs:
+        if lost := run.description.get("grains_lost"):
+            typer.echo(f"warning: {run.label}: {lost} grains left the box; the others are compared", err=True)
     print_table(comparison_table(ensemble, judgements))
     if out is not None:
         references = " ".join(f"--dem {path}" for path in dem)

@@ -1,5 +1,6 @@
 """The command `grainlaw`: the sub-commands, and the exit codes (0 done, 2 bad input, 1 anything else)."""
 
+import io
 import sys
 from importlib.metadata import version
 from typing import Annotated
@@ -59,12 +60,20 @@ def _options(
 
 def main() -> None:
     """Run the command line: bad input is one line on stderr and exit code 2, a failed computation exit code 1."""
+    _escape_what_the_terminal_lacks()
     try:
         app()
     except InputError as error:
         _fail(error, 2)
     except SimulationError as error:
         _fail(error, 1)
+
+
+def _escape_what_the_terminal_lacks() -> None:
+    """Write characters outside the encoding of the output, of a path or a unit, as escapes instead of failing."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _fail(error: Exception, code: int) -> None:

@@ -78,7 +78,7 @@ class MixedControl(BaseModel):
 def read_control(path: Path) -> MixedControl:
     """The control in a TOML file. Raises InputError with the first fault."""
     try:
-        return MixedControl.model_validate(tomllib.loads(path.read_text()))
+        return MixedControl.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise InputError(f"control file {path} cannot be read: {error}") from error
     except ValidationError as error:

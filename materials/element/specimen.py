@@ -77,7 +77,7 @@ def base_values(law: Law, parameters: str | Path | None) -> tuple[dict[str, Any]
 
 def _read_values(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text())
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise InputError(f"parameter file {path} cannot be read: {error}") from error
 

@@ -15,7 +15,7 @@ def read_content(path: Path, overrides: Mapping[str, Any]) -> dict[str, Any]:
     Raises InputError for a file that cannot be read and for a key that leads nowhere.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
@@ -48,7 +48,7 @@ def _take_in_parameter_file(table: Any, scene: Path) -> None:
         return
     file = scene.parent / str(name)
     try:
-        values = tomllib.loads(file.read_text(encoding="utf-8"))
+        values = tomllib.loads(file.read_text(encoding="utf-8-sig"))
     except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{scene}: parameter file {file} cannot be read: {error}") from None
     for key, value in values.items():

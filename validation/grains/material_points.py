@@ -74,6 +74,12 @@ def grain_density(bodies: Sequence[Body], otherwise: float | None = None) -> flo
     return float(found.pop() or 0.0)
 
 
+def grain_diameter(bodies: Sequence[Body]) -> float | None:
+    """The one grain diameter of all bodies [m]; None where a law declares none, or they differ."""
+    found = {getattr(body.parameters, "grain_diameter", None) for body in bodies}
+    return found.pop() if len(found) == 1 else None
+
+
 def _solid_volumes(bodies: Sequence[Body], density: float) -> Array:
     return np.concatenate([np.full(body.count, body.point_mass / density) for body in bodies])
 

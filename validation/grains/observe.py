@@ -9,6 +9,7 @@ import numpy as np
 
 from grainlaw.materials import InputError
 from grainlaw.validation.grains.coarse_graining import (
+    SPACING,
     Kernel,
     Lattice,
     column_lattice,
@@ -24,6 +25,8 @@ from grainlaw.validation.grains.surface import bulk_solid_fraction, fronts, inte
 
 # Room for the kernel around the material, in its widths.
 MARGIN = 4.0
+# Of the lattice on which grains are spread; more would not fit into memory.
+MOST_CELLS = 2e7
 
 
 @dataclass(frozen=True)
@@ -104,6 +107,8 @@ def observe(snapshots: Iterable[GrainSnapshot], setting: Setting, description: d
         for number, field in zip(chosen, fields, strict=True):
             field.update(_stresses(snapshots[number], lattice, setting))
     times = np.array([snapshot.time for snapshot in snapshots])
+    if lost := snapshots[0].count - min(snapshot.count for snapshot in snapshots):
+        description = {**description, "grains_lost": lost}
     return Observation(
         description={**description, "bulk_solid_fraction": bulk, "kernel_width": setting.width},
         times=times,
@@ -120,6 +125,11 @@ def _lattice(snapshots: list[GrainSnapshot], setting: Setting) -> Lattice:
     margin = MARGIN * setting.width
     reach = max(float(np.abs(snapshot.positions[:, 0] - setting.center).max()) for snapshot in snapshots)
     top = max(float(snapshot.positions[:, 2].max()) for snapshot in snapshots)
+    if (2.0 * reach + 2.0 * margin) * (top - setting.floor + margin) > MOST_CELLS * SPACING**2:
+        raise InputError(
+            f"grains up to {reach:g} m from x = {setting.center:g} m and {top:g} m high are too far apart to be spread "
+            f"over cells of {SPACING:g} m; did grains leave the box?"
+        )
     return column_lattice(setting.center, reach + margin, setting.floor, top - setting.floor + margin)
 
 

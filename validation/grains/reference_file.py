@@ -10,8 +10,10 @@ from grainlaw.validation.grains.run_description import RUN_DESCRIPTION_NAME, rea
 from grainlaw.validation.grains.surface_table import is_surface_table, read_surface_table
 
 
-def load_reference(path: Path) -> Observation:
+def load_reference(path: Path, grain_diameter: float | None = None) -> Observation:
     """The observation of a folder with run.json, a dump beside one, an HDF5 observation, or a CSV of t, x, h.
+
+    `grain_diameter` [m] is that of a CSV which names none.
 
     Raises InputError in one line for a missing, damaged or unknown file.
     """
@@ -24,7 +26,7 @@ def load_reference(path: Path) -> Observation:
     if is_observation(path):
         return read_observation(path)
     if is_surface_table(path):
-        return read_surface_table(path)
+        return read_surface_table(path, grain_diameter)
     if not (path.parent / RUN_DESCRIPTION_NAME).is_file():
         raise InputError(
             f"{path} is neither an observation nor a table of t, x, h; a dump of grains needs a {RUN_DESCRIPTION_NAME} "

@@ -5,6 +5,7 @@ from pathlib import Path
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from grainlaw.materials import InputError
+from grainlaw.validation.grains.readers.text_file import BYTE_ORDER_MARK
 
 RUN_DESCRIPTION_NAME = "run.json"
 
@@ -26,7 +27,7 @@ class RunDescription(BaseModel):
     frames         the dumps; without it, every file of the folder that looks like one
     grains_files   instead of frames: a pattern of the dumps' names
     release_time   on the run's clock [s]; all other times count from it
-    time_step      turns the step number of a LIGGGHTS dump into a time [s]
+    time_step      turns the step number of a LIGGGHTS dump, in VTK that of its name, into a time [s]
     floor_level    level from which heights count [m]
     center         of the column along x [m]
     solid_fraction of the packing before the release; without it, that of the first frame
@@ -64,7 +65,7 @@ def read_run_description(folder: Path) -> RunDescription:
     if not path.is_file():
         raise InputError(f"{folder} holds no {RUN_DESCRIPTION_NAME}, which tells at least depth and grain_density")
     try:
-        return RunDescription.model_validate_json(path.read_bytes())
+        return RunDescription.model_validate_json(path.read_bytes().removeprefix(BYTE_ORDER_MARK))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"]) or "the file"

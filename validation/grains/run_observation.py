@@ -7,7 +7,7 @@ from grainlaw.mpm_core.output.recorder import SCENE_NAME
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.model import Scene
-from grainlaw.validation.grains.material_points import DEPTH, grain_density, mirrored, snapshots_of_run
+from grainlaw.validation.grains.material_points import DEPTH, grain_density, grain_diameter, mirrored, snapshots_of_run
 from grainlaw.validation.grains.observation import Observation
 from grainlaw.validation.grains.observe import Setting, observe
 
@@ -40,6 +40,12 @@ def observe_run(folder: Path, width: float, density: float | None = None) -> Obs
         gravity=-scene.gravity[1],
     )
     return observe(snapshots, setting, _description(folder, scene, bodies))
+
+
+def diameter_of_run(folder: Path) -> float | None:
+    """The grain diameter that the laws of a run declare [m], if it is one. Raises InputError if there is no run."""
+    RunFolder(folder)
+    return grain_diameter(build_bodies(Scene.load(folder / SCENE_NAME)))
 
 
 def _description(folder: Path, scene: Scene, bodies: list[Body]) -> dict[str, object]:

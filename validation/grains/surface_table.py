@@ -5,6 +5,7 @@
     0.0,-0.1,0.0
     0.0,0.0,0.1
 
+Without the line of the grain diameter [m] it is that of the run's law.
 t in seconds since the release, x from the axis of the column and the height h in metres; rows in any order.
 """
 
@@ -16,7 +17,8 @@ import numpy as np
 from grainlaw.materials import InputError
 from grainlaw.validation.grains.coarse_graining import SPACING
 from grainlaw.validation.grains.observation import Observation
-from grainlaw.validation.grains.readers.raw_frame import parsed_rows, read_text
+from grainlaw.validation.grains.readers.columns import parsed_columns
+from grainlaw.validation.grains.readers.text_file import read_text
 from grainlaw.validation.grains.snapshot import Array
 from grainlaw.validation.grains.surface import fronts
 
@@ -29,28 +31,31 @@ _DIAMETER = re.compile(r"#\s*grain_diameter\s*=\s*(\S+)\s*")
 def is_surface_table(path: Path) -> bool:
     """Whether a file is text whose first line that is no comment names t, x and h."""
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except UnicodeDecodeError:
+        lines = read_text(path)
+    except InputError:
         return False
     header = next((line for line in lines if line.strip() and not line.startswith("#")), "")
     return set(COLUMNS) <= {name.strip() for name in header.split(",")}
 
 
-def read_surface_table(path: Path) -> Observation:
-    """Surface, runout and height of such a file. Raises InputError in one line for whatever is wrong in it."""
+def read_surface_table(path: Path, grain_diameter: float | None = None) -> Observation:
+    """Surface, runout and height of such a file; `grain_diameter` [m] is taken if the file names none.
+
+    Raises InputError in one line for whatever is wrong in it.
+    """
     lines = read_text(path)
     comments = [line for line in lines if line.startswith("#")]
     rows = [line for line in lines if line.strip() and not line.startswith("#")]
     names = [name.strip() for name in rows[0].split(",")]
-    values = parsed_rows(path, rows[1:], len(names), len(comments) + 2, ",")
-    if len(values) == 0:
+    values = parsed_columns(path, names, rows[1:], len(comments) + 2, ",", needed=set(COLUMNS))
+    t, x, h = (values[name] for name in COLUMNS)
+    if len(t) == 0:
         raise InputError(f"{path}: no rows follow its header")
-    t, x, h = (values[:, names.index(name)] for name in COLUMNS)
-    if not np.isfinite(values).all():
+    if not all(np.isfinite(column).all() for column in (t, x, h)):
         raise InputError(f"{path}: values that are no finite numbers")
     if max(np.abs(x).max(), h.max()) > LARGEST_LENGTH:
         raise InputError(f"{path}: lengths up to {np.abs(x).max():g} m; is the file in millimetres?")
-    diameter = _diameter(path, comments)
+    diameter = _diameter(path, comments, grain_diameter)
     times = np.unique(t)
     cells = int(np.ceil(np.abs(x).max() / SPACING)) + 1
     lattice = (np.arange(-cells, cells) + 0.5) * SPACING
@@ -73,11 +78,13 @@ def _surface(lattice: Array, x: Array, h: Array) -> Array:
     return np.interp(lattice, x[order], h[order], left=0.0, right=0.0)
 
 
-def _diameter(path: Path, comments: list[str]) -> float:
+def _diameter(path: Path, comments: list[str], otherwise: float | None) -> float:
     for line in comments:
         if found := _DIAMETER.fullmatch(line):
             try:
                 return float(found[1])
             except ValueError:
                 raise InputError(f"{path}: grain_diameter '{found[1]}' is not a number") from None
+    if otherwise is not None:
+        return otherwise
     raise InputError(f"{path}: a line '# grain_diameter = ...' [m] before the header is missing")

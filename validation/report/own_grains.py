@@ -8,7 +8,7 @@ import numpy as np
 from grainlaw.validation.dem.judging.judgement import Judgement
 from grainlaw.validation.grains.distance import compare
 from grainlaw.validation.grains.reference_file import load_reference
-from grainlaw.validation.grains.run_observation import observe_run
+from grainlaw.validation.grains.run_observation import diameter_of_run, observe_run
 from grainlaw.validation.reference.reference_set import Ensemble
 from grainlaw.validation.report.grain_sections import column_figures
 from grainlaw.validation.report.grain_tables import comparison_table, profile_table
@@ -23,7 +23,9 @@ def judged_runs(folders: Sequence[Path], references: Sequence[Path]) -> tuple[En
 
     Raises InputError in one line for whatever cannot be read, and for columns of different size.
     """
-    observed = [load_reference(path) for path in references]
+    diameters = {diameter_of_run(folder) for folder in folders}
+    diameter = diameters.pop() if len(diameters) == 1 else None
+    observed = [load_reference(path, diameter) for path in references]
     width = float(np.mean([reference.description["kernel_width"] for reference in observed]))
     densities = {float(found) for reference in observed if (found := reference.description.get("grain_density"))}
     density = densities.pop() if len(densities) == 1 else None

@@ -13,7 +13,8 @@ import numpy as np
 from grainlaw.materials import InputError
 from grainlaw.materials.errors import nearest_name
 from grainlaw.validation.grains.readers import liggghts
-from grainlaw.validation.grains.readers.raw_frame import frame_of_rows, parsed_rows, read_text
+from grainlaw.validation.grains.readers.columns import parsed_columns
+from grainlaw.validation.grains.readers.text_file import read_start, read_text
 from grainlaw.validation.grains.snapshot import Array
 
 NAMES = ("x1", "y1", "z1", "x2", "y2", "z2", "id1", "id2", "periodic", "fx", "fy", "fz")
@@ -27,9 +28,8 @@ def read_contacts(path: Path) -> tuple[Array, Array, Array]:
     """
     if not path.is_file():
         raise InputError(f"{path} does not exist; run.json names it as a file of contacts")
-    with path.open("rb") as file:
-        is_liggghts = file.read(14) == b"ITEM: TIMESTEP"
-    columns = _of_liggghts(path) if is_liggghts else _of_text(path)
+    start = liggghts.ITEM.encode()
+    columns = _of_liggghts(path) if read_start(path, len(start)) == start else _of_text(path)
     for name in (*FIRST, *SECOND, *FORCE):
         if name not in columns:
             raise InputError(f"{path} has no column '{name}': {nearest_name(name, columns)}")
@@ -54,4 +54,4 @@ def _of_text(path: Path) -> dict[str, Array]:
     lines = read_text(path)
     names = lines[0].lstrip("#").split()
     rows = [line for line in lines[1:] if line.strip()]
-    return frame_of_rows(path, names, parsed_rows(path, rows, len(names), 2)).columns
+    return parsed_columns(path, names, rows, 2, needed=set(NAMES))

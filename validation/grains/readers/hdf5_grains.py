@@ -12,6 +12,7 @@ import numpy as np
 
 from grainlaw.materials import InputError
 from grainlaw.validation.grains.readers.raw_frame import RawFrame
+from grainlaw.validation.grains.readers.text_file import is_packed
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 FRAMES = "frames"
@@ -24,6 +25,8 @@ def recognises(path: Path, start: bytes) -> bool:
 
 def frames(path: Path) -> Iterator[RawFrame]:
     """All frames in the order of their names. Raises InputError for a damaged file or one of another kind."""
+    if is_packed(path):
+        raise InputError(f"{path} is packed by gzip, which HDF5 does not read; unpack it first")
     try:
         with h5py.File(path) as file:
             if FRAMES not in file or len(file[FRAMES]) == 0:
@@ -53,4 +56,5 @@ def _frame(path: Path, name: str, group: h5py.Group) -> RawFrame:
         columns.update(zip(parts, values.reshape(len(values), -1).T, strict=True))
     if len({len(values) for values in columns.values()}) > 1:
         raise InputError(f"{path}: the datasets of {FRAMES}/{name} differ in length")
-    return RawFrame(path, columns, float(group.attrs["time"]) if "time" in group.attrs else None)
+    time = float(group.attrs["time"]) if "time" in group.attrs else None
+    return RawFrame(path, columns, time, complete=True)

@@ -11,17 +11,16 @@ from grainlaw.materials import InputError
 from grainlaw.materials.errors import nearest_name
 from grainlaw.validation.grains.snapshot import Array, GrainSnapshot, sphere_diameters, sphere_volumes
 
-# One name for what codes call differently.
-ALIASES = {"r": "radius", "rad": "radius", "radii": "radius", "mask": "type"}
 # Larger grains than this are taken for lengths in millimetres.
 LARGEST_DIAMETER = 1.0
 
 
 @dataclass(frozen=True)
 class RawFrame:
-    """Columns of one time, each of shape (n,), with the names of `ALIASES` settled.
+    """Columns of one time, each of shape (n,), with the names that `columns.settled` gives.
 
     time [s], step and the file of the contacts where told
+    complete   the file tells its number of grains and holds them all: it is not cut off
     """
 
     path: Path
@@ -29,6 +28,7 @@ class RawFrame:
     time: float | None = None
     step: int | None = None
     contacts: Path | None = None
+    complete: bool = False
 
 
 class Reader(Protocol):
@@ -41,39 +41,6 @@ class Reader(Protocol):
     def frames(self, path: Path) -> Iterator[RawFrame]:
         """All frames of a file. Raises InputError in one line."""
         ...
-
-
-def frame_of_rows(
-    path: Path, names: list[str], rows: Array, time: float | None = None, step: int | None = None
-) -> RawFrame:
-    """A frame from a table with one row for each grain."""
-    columns = {ALIASES.get(name, name): rows[:, number] for number, name in enumerate(names)}
-    return RawFrame(path, columns, time, step)
-
-
-def parsed_rows(path: Path, lines: list[str], columns: int, first_line: int, separator: str | None = None) -> Array:
-    """Numbers of a text table, shape (rows, columns). Raises InputError for a short, long or non-numeric row."""
-    rows = [line.split(separator) for line in lines]
-    for number, row in enumerate(rows):
-        if len(row) != columns:
-            raise InputError(
-                f"{path}, line {first_line + number}: {len(row)} of {columns} columns; is the file truncated?"
-            )
-    try:
-        return np.array(rows, float).reshape(-1, columns)
-    except ValueError as error:
-        raise InputError(f"{path}: {error} from line {first_line} on") from None
-
-
-def read_text(path: Path) -> list[str]:
-    """Lines of a text file. Raises InputError if it is empty or no text."""
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except UnicodeDecodeError:
-        raise InputError(f"{path} is no text file") from None
-    if not any(line.strip() for line in lines):
-        raise InputError(f"{path} is empty")
-    return lines
 
 
 def snapshot_of(frame: RawFrame, time: float, mobile_types: tuple[int, ...] | None) -> GrainSnapshot:
@@ -102,6 +69,11 @@ def snapshot_of(frame: RawFrame, time: float, mobile_types: tuple[int, ...] | No
             f"{frame.path}: all grains have y = {positions[0, 1]:g} m; expected three dimensions, y the depth"
         )
     return GrainSnapshot(time, positions, velocities, sphere_volumes(radii))
+
+
+def mobile_count(frame: RawFrame, mobile_types: tuple[int, ...] | None) -> int:
+    """Number of grains of a frame that count."""
+    return len(_column(frame.path, _mobile(frame, mobile_types), "x"))
 
 
 def _mobile(frame: RawFrame, mobile_types: tuple[int, ...] | None) -> dict[str, Array]:

@@ -1,6 +1,7 @@
 """VTK point data of LIGGGHTS (`dump custom/vtk`) and YADE (`VTKRecorder`, spheres): legacy and XML files."""
 
 import contextlib
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -8,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from grainlaw.materials import InputError
-from grainlaw.validation.grains.readers.raw_frame import ALIASES, RawFrame
+from grainlaw.validation.grains.readers.columns import VECTORS, settled
+from grainlaw.validation.grains.readers.raw_frame import RawFrame
+from grainlaw.validation.grains.readers.text_file import is_packed
 
 ENDINGS = (".vtk", ".vtp", ".vtu")
-VELOCITY_NAMES = ("v", "velocity", "linVel")
+_LAST_NUMBER = re.compile(r"(\d+)\D*$")
 
 
 def recognises(path: Path, start: bytes) -> bool:
@@ -20,22 +23,25 @@ def recognises(path: Path, start: bytes) -> bool:
 
 
 def frames(path: Path) -> Iterator[RawFrame]:
-    """The one frame of a file; its time is the field `TIME` if there is one."""
+    """The one frame of a file; its time is the field `TIME` if there is one, its step the last number of its name."""
     data = _read(path)
     columns = dict(zip("xyz", np.asarray(data.points, float).T, strict=True))
     for name in data.point_data:
-        values = np.asarray(data.point_data[name], float)
+        values = np.asarray(data.point_data[name])
+        if not np.issubdtype(values.dtype, np.number):
+            continue
         if values.ndim == 1:
-            columns[ALIASES.get(name, name)] = values
-        elif name in VELOCITY_NAMES:
+            columns[name] = values.astype(float)
+        elif name in VECTORS:
             if values.shape[1] != 3:
                 raise InputError(f"{path}: '{name}' has {values.shape[1]} components, expected 3")
-            columns.update(zip(("vx", "vy", "vz"), values.T, strict=True))
+            columns.update(zip(VECTORS[name], values.T.astype(float), strict=True))
     time = None
     for name in ("TIME", "TimeValue"):
         with contextlib.suppress(KeyError):
             time = float(np.ravel(data.field_data[name])[0])
-    yield RawFrame(path, columns, time)
+    number = _LAST_NUMBER.search(path.stem)
+    yield RawFrame(path, settled(columns), time, int(number[1]) if number else None, complete=True)
 
 
 def _read(path: Path) -> Any:
@@ -44,6 +50,8 @@ def _read(path: Path) -> Any:
 
     if path.stat().st_size == 0:
         raise InputError(f"{path} is empty")
+    if is_packed(path):
+        raise InputError(f"{path} is packed by gzip, which VTK does not read; unpack it first")
     try:
         with pyvista.vtk_verbosity("off"):
             data = pyvista.read(path)
