@@ -15,9 +15,10 @@ Return. Along (2) the trial state (p*, tau*) moves by K B gamma^p and -G gamma^p
 
     gamma^p = (tau* - A p* - k) / (G + A K B)                                                (6)
 
-it is on the cone. If that asks for tau < 0 the state is the apex, p = -k/A, s = 0; of the volume that is left, what (2)
-does not account for is an opening. It is kept as `opening_strain`, which has to close before the pressure departs
-from the apex.
+it is on the cone. If that leads below its apex the state is the apex, p = -k/A, s = 0; of the volume that is left, what
+(2) does not account for is an opening. It is kept as `opening_strain`, which has to close before the pressure departs
+from the apex. With A = 0 there is no apex if k > 0; with k = 0 besides, the cone is the axis p >= 0: a fluid that
+cannot be pulled.
 
 Source: Drucker & Prager (1952), Q. Appl. Math. 10; the bars: Bui, Fukagawa, Sako & Ohno (2008), Int. J. Numer. Anal.
 Meth. Geomech. 32.
@@ -114,16 +115,20 @@ def update(
     trial_tau = half_norm(trial)
 
     cone = strength_of(parameters)
-    overstress = trial_tau - cone.friction * trial_pressure - cone.cohesion
-    if overstress <= 0.0:
-        return assembled_stress(trial_pressure, trial), State(0.0)
-    plastic_shear = overstress / (modulus + cone.friction * bulk_modulus * cone.dilatancy)
-    tau = trial_tau - modulus * plastic_shear
-    if tau > 0.0:
-        new_pressure = trial_pressure + bulk_modulus * cone.dilatancy * plastic_shear
-        return assembled_stress(new_pressure, trial * (tau / trial_tau)), State(0.0)
-
+    # Without friction: 0 without cohesion, else out of reach.
     apex = -cone.cohesion / max(cone.friction, 1e-300)
+    overstress = trial_tau - cone.friction * trial_pressure - cone.cohesion
+    if overstress <= 0.0 and trial_pressure >= apex:
+        return assembled_stress(trial_pressure, trial), State(0.0)
+    plastic_shear = max(0.0, overstress) / (modulus + cone.friction * bulk_modulus * cone.dilatancy)
+    tau = trial_tau - modulus * plastic_shear
+    new_pressure = trial_pressure + bulk_modulus * cone.dilatancy * plastic_shear
+    # The pressure decides: on a narrow cone, the sign of tau is round-off.
+    if tau > 0.0 and new_pressure >= apex:
+        return assembled_stress(new_pressure, trial * (tau / trial_tau)), State(0.0)
+    if new_pressure > apex:
+        return isotropic(-new_pressure), State(0.0)
+
     dilation = cone.dilatancy * trial_tau / modulus
     return isotropic(-apex), State(max(0.0, (apex - trial_pressure) / bulk_modulus - dilation))
 

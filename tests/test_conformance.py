@@ -71,6 +71,19 @@ def test_deliberate_mistake_is_caught_by_name(name, tmp_path):
     assert outcome.verdict == "FAIL", outcome.reason
 
 
+def test_law_that_loses_its_pressure_at_the_end_of_its_bounds_is_caught(tmp_path):
+    text = Path(get_material("drucker_prager").source_file).read_text()
+    carried = "    if new_pressure > apex:\n        return isotropic(-new_pressure), State(0.0)\n"
+    assert text.count(carried) == 1
+    path = tmp_path / "unsound_cone.py"
+    path.write_text(text.replace(carried, "").replace('name="drucker_prager"', 'name="unsound_cone"'))
+    found = Registry()
+    found.load_file(path)
+    outcomes = verdicts(found.get("unsound_cone").law)
+    assert [name for name, outcome in outcomes.items() if outcome.verdict == "FAIL"] == ["bounds"]
+    assert "compression by 1% takes the pressure from 1000 to -0 Pa" in outcomes["bounds"].reason
+
+
 def test_every_check_has_its_deliberate_mistake():
     without = {"declarations", "viscosity", "ptx", "cost"}
     assert {check.name for check in CHECKS} == MISTAKES.keys() | without

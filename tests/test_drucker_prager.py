@@ -94,3 +94,27 @@ def test_open_grains_carry_no_shear():
     stress, state = LAW.update(isotropic(-100.0), isotropic(0.01), 2650.0, state, BARS, 1.0)
     sheared, _ = LAW.update(stress, SymmetricTensor(0.0, 0.0, 0.0, 0.1, 0.0, 0.0), 2650.0, state, BARS, 1.0)
     assert list(sheared) == [0.0] * 6
+
+
+@pytest.mark.parametrize("friction", [0.0, 1e-18, 1e-12])
+def test_compression_is_carried_however_narrow_the_cone(friction):
+    parameters = with_angles(friction, 0.0, 0.0)
+    bulk_modulus = parameters.bulk_modulus
+    for shear in (0.0, 1e-6, 0.003, 0.1):
+        strain = SymmetricTensor(-0.002, -0.001, -0.003, shear, 0.0, 0.0)
+        stress, state = LAW.update(
+            isotropic(-500.0), strain, 2650.0, LAW.initial_state(isotropic(-500.0), 2650.0, parameters), parameters, 1.0
+        )
+        assert pressure(stress) == pytest.approx(500.0 + 0.006 * bulk_modulus, rel=1e-12)
+        assert half_norm(deviator(stress)) <= 1e-9
+        assert state.opening_strain == 0.0
+
+
+@pytest.mark.parametrize("shear", [0.0, 1e-6, 0.003, 0.1])
+def test_fluid_without_friction_and_cohesion_cannot_be_pulled(shear):
+    parameters = with_angles(0.0, 0.0, 0.0)
+    start = isotropic(-0.001 * parameters.bulk_modulus)
+    strain = SymmetricTensor(0.004, 0.0, 0.0, shear, 0.0, 0.0)
+    stress, state = LAW.update(start, strain, 2650.0, LAW.initial_state(start, 2650.0, parameters), parameters, 1.0)
+    assert list(stress) == [0.0] * 6
+    assert state.opening_strain == pytest.approx(0.003, rel=1e-12)

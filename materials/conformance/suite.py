@@ -16,7 +16,7 @@ CHECKS = (
     Check("units", "in other units of length, mass and time the answers are the same", declared.units),
     Check(
         "bounds",
-        "parameters at and between their bounds give numbers, or are refused as inconsistent",
+        "parameters at and between their bounds give numbers and carry load, or are refused as inconsistent",
         declared.bounds,
     ),
     Check("equilibrium", "without strain, an initial state stays as it is", mechanics.equilibrium),
