@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from grainlaw.face.scenes import scenes as scenes
     from grainlaw.face.simulations import Simulation as Simulation
     from grainlaw.materials.errors import InputError as InputError
+    from grainlaw.materials.errors import InputWarning as InputWarning
     from grainlaw.materials.errors import SimulationError as SimulationError
 
     __version__: str
@@ -35,6 +36,7 @@ _HOMES = {
     "ConstitutiveLaw": "grainlaw.face.laws",
     "ElementTestResult": "grainlaw.face.element_tests",
     "InputError": "grainlaw.materials.errors",
+    "InputWarning": "grainlaw.materials.errors",
     "Run": "grainlaw.face.runs",
     "Scene": "grainlaw.face.scenes",
     "Simulation": "grainlaw.face.simulations",
@@ -50,6 +52,7 @@ __all__ = [
     "ConstitutiveLaw",
     "ElementTestResult",
     "InputError",
+    "InputWarning",
     "Run",
     "Scene",
     "Simulation",

@@ -1,4 +1,4 @@
-"""The two ways in which a request can fail."""
+"""The two ways in which a request can fail, and the warning about one that may not mean what it says."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -10,6 +10,10 @@ class InputError(Exception):
 
 class SimulationError(Exception):
     """The request was right but the computation went wrong: the message says when, where and what is left."""
+
+
+class InputWarning(UserWarning):
+    """The request can be done as it stands, but is seldom meant so: the message says what to write instead."""
 
 
 def nearest_name(name: str, valid: Iterable[str]) -> str:

@@ -76,6 +76,9 @@ class Law:
     holds_in_single whether `update` and `sound_speed` hold in single precision: without a loop that ends at a tolerance
                     below 1e-6, nor a difference of numbers that agree to seven digits. Bodies in single precision have
                     other laws computed in double (version 2)
+    least_initial_pressure  (parameters) -> pressure [Pa] below which a point has next to no stiffness at the start,
+                    because the law's stiffness grows with pressure; a body of a scene that starts there is warned about
+                    (version 2)
     resolutions     (parameters) -> how finely a scene has to be resolved for `accuracy = "10%"`, "3%" or "1%"; a scene
                     that asks for an accuracy without an entry is refused
 
@@ -102,6 +105,7 @@ class Law:
     ) = None
     holds_in_single: bool = False
     resolutions: Callable[[Any], Mapping[str, Resolution]] = _no_resolutions
+    least_initial_pressure: Callable[[Any], float] | None = None
 
     def checked(self, values: dict[str, Any], where: str) -> Any:
         """Parameters of this law from values by name; `where` names their place in messages. Raises InputError."""
@@ -162,7 +166,14 @@ def _check_hook_version(law: Law) -> None:
         raise DeclarationError(
             f"written for hook version {written_for}; {understood}: the law has to be brought up to date"
         )
-    for name in ("small_step", "stored_energy", "lower_bounds", "viscosity", "holds_in_single"):
+    for name in (
+        "small_step",
+        "stored_energy",
+        "lower_bounds",
+        "viscosity",
+        "holds_in_single",
+        "least_initial_pressure",
+    ):
         if getattr(law, name) and written_for < STATEMENTS_VERSION:
             raise DeclarationError(
                 f"{name} belongs to hook version {STATEMENTS_VERSION}; the law says hook_version={written_for}"

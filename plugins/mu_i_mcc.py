@@ -225,6 +225,7 @@ LAW = Law(
     stored_energy=stored_energy,
     lower_bounds={"preconsolidation_pressure": smallest_yield_surface},
     inconsistency=inconsistency,
+    least_initial_pressure=lambda parameters: parameters.stress_free_pressure,
     small_step=small_flowing_step_of(State, constants_of),
     parameter_sets={
         "paper": ParameterSet(PAPER, f"{SOURCE}; OCR = 1", density_on_compression_line),

@@ -91,3 +91,31 @@ def test_faulty_control_is_refused_in_one_line(tmp_path, text, message):
     assert message in str(error.value)
     assert "control.toml" in str(error.value)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("law", ["modified_cam_clay", "mu_i_mcc"])
+def test_strain_beyond_the_range_of_numbers_ends_with_the_strain_reached(tmp_path, law):
+    control = written(tmp_path, "time_step = 0.02\n[[stage]]\nduration = 2.0\nstrain_rate = { xx = -90.0 }\n")
+    with pytest.raises(SimulationError, match=r"stress or density not finite in step \d+ .*strain reached: xx = -\d+"):
+        run_mixed(control, law)
+
+
+def test_extension_until_nothing_is_left_ends_with_the_strain_reached(tmp_path):
+    control = written(tmp_path, "time_step = 1.0\n[[stage]]\nduration = 9.0\nstrain_rate = { xx = 150.0, yz = 0.5 }\n")
+    with pytest.raises(SimulationError, match=r"in step 5 .*strain reached: xx = 600, yz = 2$"):
+        run_mixed(control, "linear_elastic", density=1e-15)
+
+
+@pytest.mark.parametrize("test", ["isotropic", "oedometer"])
+def test_tests_without_control_end_with_the_strain_reached(test):
+    chosen = get_element_test(test)
+    values = {"final_strain": 60.0, "strain_rate": 1.0, "time_step": 0.5}
+    with pytest.raises(SimulationError, match=r"stress or density not finite in step .* strain reached: .*yy = -"):
+        run_element_test(chosen, *prepared("modified_cam_clay", None, values, chosen))
+
+
+def test_held_stress_that_is_lost_names_the_strain_reached():
+    chosen = get_element_test("triaxial-drained")
+    values = {"final_strain": 900.0, "strain_rate": 1.0, "time_step": 10.0}
+    with pytest.raises(SimulationError, match="strain reached: "):
+        run_element_test(chosen, *prepared("modified_cam_clay", None, values, chosen))

@@ -2,8 +2,9 @@
 
 import io
 import sys
+import warnings
 from importlib.metadata import version
-from typing import Annotated
+from typing import Annotated, TextIO
 
 import typer
 
@@ -20,6 +21,7 @@ from grainlaw.cli.run_command import run
 from grainlaw.cli.scenes_command import scenes
 from grainlaw.cli.validate_command import validate
 from grainlaw.materials import InputError, SimulationError
+from grainlaw.materials.errors import InputWarning
 
 app = typer.Typer(
     help="Constitutive laws for granular matter: list them, test them on one point, run them in a scene.",
@@ -62,7 +64,9 @@ def main() -> None:
     """Run the command line: bad input is one line on stderr and exit code 2, a failed computation exit code 1."""
     _escape_what_the_terminal_lacks()
     try:
-        app()
+        with warnings.catch_warnings():
+            warnings.showwarning = _show_warning
+            app()
     except InputError as error:
         _fail(error, 2)
     except SimulationError as error:
@@ -74,6 +78,21 @@ def _escape_what_the_terminal_lacks() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+
+
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """What is said about the request in one line; anything else as Python does."""
+    if issubclass(category, InputWarning):
+        typer.echo(f"warning: {message}", err=True)
+    else:
+        (file or sys.stderr).write(warnings.formatwarning(message, category, filename, lineno, line))
 
 
 def _fail(error: Exception, code: int) -> None:

@@ -10,13 +10,12 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
-import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
 from grainlaw.materials.compilation import PointwiseLaw, explained, mark_of_reached, named, pointwise_law
 from grainlaw.materials.element.path import LoadingPath
-from grainlaw.materials.element.point import Point
+from grainlaw.materials.element.point import Point, is_finite, strain_reached
 from grainlaw.materials.element.search import narrowed, search_from
 from grainlaw.materials.element.specimen import Specimen
 from grainlaw.materials.errors import SimulationError
@@ -28,10 +27,11 @@ MAXIMUM_ITERATIONS = 200
 # Share of the prescribed rate by which x first moves while its slope is unknown.
 FIRST_REACH = 0.1
 
-SEARCH_MARK = mark_of_reached([search_from, narrowed, Point])
+SEARCH_MARK = mark_of_reached([search_from, narrowed, is_finite, Point])
 
 register_jitable(search_from)
 register_jitable(narrowed)
+register_jitable(is_finite)
 
 
 @cache
@@ -39,7 +39,7 @@ def make_advance(law: PointwiseLaw) -> Any:
     """The compiled loop over the steps of a path, for one law.
 
     advance(point, parameters, dt, rates, direction, free, held, target) -> (point, steps done); it stops
-    before the first step whose control does not converge.
+    before the first step whose control does not converge, or whose stress or density is not finite.
     """
     update = law.update
 
@@ -62,7 +62,10 @@ def make_advance(law: PointwiseLaw) -> Any:
             if is_controlled and not abs(residual) <= tolerance:
                 return point, step
             strain = point.strain + dt * strain_rate
-            point = Point(point.time, stress, strain, strain_rate, density, state, search)
+            moved = Point(point.time, stress, strain, strain_rate, density, state, search)
+            if not is_finite(moved):
+                return point, step
+            point = moved
         return point, rates.size
 
     return advance
@@ -71,7 +74,8 @@ def make_advance(law: PointwiseLaw) -> Any:
 def follow_path(specimen: Specimen, path: LoadingPath, point: Point, stride: int) -> Iterator[Point]:
     """The point after every `stride` steps of a path and after the last one.
 
-    Raises SimulationError, with the time, if a held stress cannot be reached or the stress is not finite.
+    Raises SimulationError, with the time and the strain reached, if a held stress cannot be reached or stress or
+    density are not finite.
     """
     advance = make_advance(pointwise_law(specimen.law))
     control = (path.direction, path.free, path.held, path.target)
@@ -80,15 +84,21 @@ def follow_path(specimen: Specimen, path: LoadingPath, point: Point, stride: int
         try:
             point, done = explained(specimen.law, advance, point, specimen.parameters, path.dt, rates, *control)
         except ArithmeticError as error:
-            raise SimulationError(f"{specimen.law.name}: {error} after t = {point.time:g} s") from error
+            raise SimulationError(
+                f"{specimen.law.name}: {error} after t = {point.time:g} s; {strain_reached(point)}"
+            ) from error
         step = start + done
         point = point._replace(time=step * path.dt)
+        if done < rates.size and not path.held_name:
+            raise SimulationError(
+                f"{specimen.law.name}: stress or density not finite in step {step + 1} "
+                f"(t = {(step + 1) * path.dt:g} s); {strain_reached(point)}"
+            )
         if done < rates.size:
             reached = contraction(path.held, point.stress)
             raise SimulationError(
                 f"{specimen.law.name}: the {path.held_name} cannot be held in step {step + 1} "
-                f"(t = {(step + 1) * path.dt:g} s); before it, the value is {reached:g} Pa of {path.target:g} Pa"
+                f"(t = {(step + 1) * path.dt:g} s); before it, the value is {reached:g} Pa of {path.target:g} Pa; "
+                f"{strain_reached(point)}"
             )
-        if not np.all(np.isfinite(point.stress)):
-            raise SimulationError(f"{specimen.law.name}: stress not finite at step {step} (t = {point.time:g} s)")
         yield point

@@ -1,9 +1,10 @@
 """A material point between two steps of an element test."""
 
+import math
 from typing import Any, NamedTuple
 
 from grainlaw.materials.element.search import Search, search_from
-from grainlaw.materials.tensor import SymmetricTensor, isotropic
+from grainlaw.materials.tensor import SymmetricTensor, contraction, isotropic, trace
 
 
 class Point(NamedTuple):
@@ -20,6 +21,19 @@ class Point(NamedTuple):
     density: float
     state: Any
     search: Search
+
+
+def is_finite(point: Point) -> bool:
+    """Whether stress and density are numbers, and there is any material left."""
+    return (
+        math.isfinite(trace(point.stress) + contraction(point.stress, point.stress)) and 0.0 < point.density < math.inf
+    )
+
+
+def strain_reached(point: Point) -> str:
+    """The strain of a point for messages, without the components that are zero."""
+    components = (f"{name} = {value:.6g}" for name, value in point.strain._asdict().items() if value != 0.0)
+    return f"strain reached: {', '.join(components) or 'none'}"
 
 
 def point_at_rest(stress: SymmetricTensor, density: float, state: Any) -> Point:

@@ -16,8 +16,8 @@ KEPT_STATES = 3000
 def run_element_test(test: ElementTest, specimen: Specimen, settings: Any) -> ElementResult:
     """The history of one point of the specimen under the test.
 
-    Raises InputError if the law does not compile and SimulationError, with the time, if a prescribed stress cannot be
-    reached or the stress is not finite.
+    Raises InputError if the law does not compile and SimulationError, with the time and the strain reached, if a
+    prescribed stress cannot be reached or stress or density are not finite.
     """
     path = test.path(settings)
     start = initial_point(specimen, settings)

@@ -13,7 +13,7 @@ from scipy.optimize import root
 from grainlaw.materials.compilation import explained, make_single_step, pointwise_law
 from grainlaw.materials.element.mixed import MixedControl, Stage
 from grainlaw.materials.element.path import steps_of
-from grainlaw.materials.element.point import Point
+from grainlaw.materials.element.point import Point, is_finite, strain_reached
 from grainlaw.materials.element.specimen import Specimen
 from grainlaw.materials.errors import SimulationError
 from grainlaw.materials.tensor import SymmetricTensor, trace
@@ -27,7 +27,8 @@ Array = NDArray[np.float64]
 def follow_stages(specimen: Specimen, control: MixedControl, point: Point, stride: int) -> Iterator[Point]:
     """The point after every `stride` steps of the stages and after the last one.
 
-    Raises SimulationError, with the time, if a prescribed stress cannot be reached.
+    Raises SimulationError, with the time and the strain reached, if a prescribed stress cannot be reached or stress or
+    density are not finite.
     """
     solver = StageSolver(specimen, control.time_step, point)
     step = 0
@@ -55,7 +56,7 @@ class StageSolver:
     def advanced(self, point: Point, stage: Stage, target: Array, guess: Array) -> tuple[Point, Array]:
         """The point one step later, and its unknown strain rates over their scale, the first guess of the next step."""
         if not stage.controlled:
-            return self._moved(point, stage.prescribed), guess
+            return self._strained(point, stage), guess
         rate_scale = self._rate_scale(stage)
 
         def trial(unknown: Array) -> Point:
@@ -74,13 +75,29 @@ class StageSolver:
         except ArithmeticError:
             # Without a solution the iteration may run away until the law leaves the range of numbers.
             error = math.inf
-        if not error <= STRESS_TOLERANCE * max(self.stress_scale, float(np.max(np.abs(target)))):
+        if not (
+            error <= STRESS_TOLERANCE * max(self.stress_scale, float(np.max(np.abs(target)))) and is_finite(reached)
+        ):
             step = round(point.time / self.dt) + 1
             raise SimulationError(
                 f"{self.law.name}: stress {', '.join(stage.stress_rate)} cannot follow its control in step {step} "
-                f"(t = {step * self.dt:g} s); the nearest found is {error:g} Pa off"
+                f"(t = {step * self.dt:g} s); the nearest found is {error:g} Pa off; {strain_reached(point)}"
             )
         return reached, found
+
+    def _strained(self, point: Point, stage: Stage) -> Point:
+        """The point one step later where every strain rate is prescribed."""
+        try:
+            moved = self._moved(point, stage.prescribed)
+            reason = "" if is_finite(moved) else "stress or density not finite"
+        except ArithmeticError as error:
+            reason = str(error)
+        if reason:
+            step = round(point.time / self.dt) + 1
+            raise SimulationError(
+                f"{self.law.name}: {reason} in step {step} (t = {step * self.dt:g} s); {strain_reached(point)}"
+            )
+        return moved
 
     def _moved(self, point: Point, strain_rate: SymmetricTensor) -> Point:
         density = point.density * math.exp(-trace(strain_rate) * self.dt)

@@ -1,15 +1,21 @@
 """Building the bodies of a scene: points, mass, stress and the law's state in equilibrium with it."""
 
+import warnings
+
 import numpy as np
 from numpy.typing import NDArray
 
 from grainlaw.materials import InputError, SymmetricTensor
+from grainlaw.materials.errors import InputWarning
 from grainlaw.materials.law import Law
 from grainlaw.mpm_core.body import POINTS_AT_ONCE, Body
 from grainlaw.mpm_core.kernels.positions import put_density, put_positions
 from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, REMAINDERS, SXX, SYY, SZZ, VX, VY, allocate
 from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
 from grainlaw.mpm_core.scene.shapes import lattice
+
+# Of stresses that may be stored in single precision.
+STRESS_ROUND_OFF = 1e-6
 
 
 def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
@@ -73,6 +79,7 @@ def _build(
     spacing = scene.grid.cell_size / section.points_per_cell**0.5
     weight = -section.density * scene.gravity[1]
     points[SXX], points[SYY], points[SZZ] = _initial_stress(section.initial_stress, positions, spacing, weight)
+    _warn_without_stiffness(law, parameters, points, f"{scene.source}: {name}")
     _initialise_state(law, parameters, points)
     return Body(name, law, parameters, storage, len(positions), section.density * spacing**2, first_id)
 
@@ -98,6 +105,23 @@ def _depth(positions: NDArray[np.float64], spacing: float) -> NDArray[np.float64
     top = np.full(column.max() + 1, -np.inf)
     np.maximum.at(top, column, positions[:, 1])
     return np.asarray(top[column] + 0.5 * spacing - positions[:, 1])
+
+
+def _warn_without_stiffness(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64], where: str) -> None:
+    """Warn, as InputWarning, about a body of which points start below the pressure that the law asks for."""
+    if law.least_initial_pressure is None:
+        return
+    least = law.least_initial_pressure(parameters)
+    lowest = -float((points[SXX] + points[SYY] + points[SZZ]).max()) / 3.0
+    if lowest < least * (1.0 - STRESS_ROUND_OFF):
+        # Without numbers that depend on the grid: Python then says it once for the grids of a rehearsal.
+        warnings.warn(
+            f"{where}.initial_stress: the body starts below a pressure of {least:g} Pa, where {law.name} has next to "
+            'no stiffness, and will sink; write initial_stress = { kind = "geostatic" }, or { kind = "uniform", '
+            f"pressure = ... }} with at least {least:g}",
+            InputWarning,
+            stacklevel=2,
+        )
 
 
 def _initialise_state(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64]) -> None:

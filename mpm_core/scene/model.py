@@ -176,7 +176,10 @@ class BodySection(Section):
         default=4, description="material points per cell, a square number; may be left to `accuracy`"
     )
     velocity: Corner = Field(default=(0.0, 0.0), description="initial velocity [m/s]")
-    initial_stress: InitialStressSection = Field(default=InitialStressSection(), description="stress at the start")
+    initial_stress: InitialStressSection = Field(
+        default=InitialStressSection(),
+        description="stress at the start; a law whose stiffness grows with pressure, as Cam Clay, needs one",
+    )
 
 
 class OutputSection(Section):
