@@ -1,5 +1,7 @@
 """The bodies at the start: mass, geostatic stress, a law's state in equilibrium with it."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, CAM_CLAY, COLUMN, ELASTIC, MU_I_LC, changed, simulation
@@ -40,6 +42,95 @@ def test_the_depth_under_a_slope_counts_from_the_slope():
     spacing = 0.0125
     np.testing.assert_allclose(points[SYY], -WEIGHT * (surface - points[Y]), atol=WEIGHT * 0.6 * spacing)
     assert (points[SYY] < 0.0).all()
+
+
+def bodies_of(*sections, **changes):
+    """Bodies of Cam Clay under their weight; a section is a shape, and further keys of the body."""
+    common = {"density": 1500.0, "material": "modified_cam_clay", "initial_stress": {"kind": "geostatic"}}
+    content = changed(COLUMN, {"material": {"modified_cam_clay": CAM_CLAY}} | changes)
+    content["body"] = [common | {"shape": shape} | further for shape, further in sections]
+    return build_bodies(Scene.from_dict(content))
+
+
+def by_place(bodies):
+    """Rows of all points of some bodies, ordered by place."""
+    points = np.concatenate([body.points for body in bodies], axis=1)
+    return points[:, np.lexsort((np.round(points[Y], 9), np.round(points[X], 9)))]
+
+
+SLOPE = [[0.1, 0.0], [1.1, 0.0], [0.8, 0.8], [0.4, 0.8]]
+
+
+@pytest.mark.parametrize("pieces", [2, 4])
+@pytest.mark.parametrize("points_per_cell", [4, 9])
+def test_a_column_or_heap_cut_into_bodies_has_the_stress_of_one(pieces, points_per_cell):
+    density = {"density": 1450.3, "points_per_cell": points_per_cell}
+    heights = np.linspace(0.0, 0.8, pieces + 1)
+    layers = [(box(1.5, low, 1.8, high), density) for low, high in pairwise(heights)]
+    left, right = np.interp(heights, [0.0, 0.8], [0.1, 0.4]), np.interp(heights, [0.0, 0.8], [1.1, 0.8])
+    for i in range(pieces):
+        vertices = [[left[i], heights[i]], [right[i], heights[i]]]
+        vertices += [[right[i + 1], heights[i + 1]], [left[i + 1], heights[i + 1]]]
+        layers.insert(0, ({"kind": "polygon", "vertices": vertices}, density))
+    whole = bodies_of((box(1.5, 0.0, 1.8, 0.8), density), ({"kind": "polygon", "vertices": SLOPE}, density))
+    cut, whole = by_place(bodies_of(*layers)), by_place(whole)
+    np.testing.assert_allclose(cut[SXX:], whole[SXX:], rtol=1e-9)
+
+
+@pytest.mark.parametrize("points_per_cell", [(4, 4), (4, 9), (16, 1), (25, 36)])
+def test_layers_of_two_densities_weigh_what_they_weigh(points_per_cell):
+    lower, upper = bodies_of(
+        (box(0.5, 0.0, 0.8, 0.5), {"density": 1800.0, "points_per_cell": points_per_cell[0]}),
+        (box(0.5, 0.5, 0.7, 0.8), {"density": 1200.0, "points_per_cell": points_per_cell[1]}),
+    )
+    np.testing.assert_allclose(upper.points[SYY], -9.8 * 1200.0 * (0.8 - upper.points[Y]), rtol=1e-9)
+    covered = lower.points[X] < 0.7
+    expected = 1800.0 * (0.5 - lower.points[Y]) + np.where(covered, 1200.0 * 0.3, 0.0)
+    np.testing.assert_allclose(lower.points[SYY], -9.8 * expected, rtol=1e-9)
+
+
+def test_bodies_of_other_spacings_beside_each_other_share_the_columns_between_them():
+    """A wall between them at 0.6875, within columns of both: no weight counts twice."""
+    fine = {"points_per_cell": 25}
+    bodies = bodies_of((box(0.5, 0.0, 0.6875, 0.8), {}), (box(0.6875, 0.0, 0.8, 0.8), fine))
+    for body in bodies:
+        depth = 0.8 - body.points[Y]
+        np.testing.assert_allclose(body.points[SYY], -WEIGHT * depth, rtol=1e-9)
+
+
+def test_nothing_rests_on_a_body_across_a_gap_of_air():
+    roof = [[0.5, 0.0], [0.9, 0.0], [0.9, 0.2], [0.6, 0.2], [0.6, 0.3], [0.9, 0.3], [0.9, 0.5], [0.5, 0.5]]
+    (bracket,) = bodies_of(({"kind": "polygon", "vertices": roof}, {}))
+    parts = bodies_of((box(0.5, 0.0, 0.9, 0.2), {}), (box(0.5, 0.2, 0.6, 0.3), {}), (box(0.5, 0.3, 0.9, 0.5), {}))
+    under_air = (bracket.points[X] > 0.6) & (bracket.points[Y] < 0.2)
+    top = np.where(under_air, 0.2, 0.5)
+    np.testing.assert_allclose(bracket.points[SYY], -WEIGHT * (top - bracket.points[Y]), rtol=1e-9)
+    np.testing.assert_allclose(by_place(parts)[SXX:], by_place([bracket])[SXX:], rtol=1e-9)
+
+
+def test_bodies_that_touch_between_lattice_lines_of_both_rest_on_each_other():
+    """The slope between them leaves gaps and overlaps of the squares of their points, narrower than a cell."""
+    low = {"kind": "polygon", "vertices": [[0.5, 0.0], [0.8, 0.0], [0.8, 0.5], [0.5, 0.3]]}
+    high = {"kind": "polygon", "vertices": [[0.5, 0.3], [0.8, 0.5], [0.8, 0.8], [0.5, 0.8]]}
+    for body in bodies_of((low, {"points_per_cell": 4}), (high, {"points_per_cell": 9})):
+        np.testing.assert_allclose(body.points[SYY], -WEIGHT * (0.8 - body.points[Y]), atol=WEIGHT * 0.0125)
+
+
+@pytest.mark.parametrize("on_the_lower_too", [False, True])
+def test_a_surcharge_acts_on_free_tops_and_is_carried_down_once(on_the_lower_too):
+    loaded = {"initial_stress": {"kind": "geostatic", "surcharge": 500.0}}
+    (alone,) = bodies_of((box(0.5, 0.0, 0.8, 0.8), loaded))
+    np.testing.assert_allclose(alone.points[SYY], -WEIGHT * (0.8 - alone.points[Y]) - 500.0, rtol=1e-9)
+    layers = (box(0.5, 0.0, 0.8, 0.5), loaded if on_the_lower_too else {}), (box(0.5, 0.5, 0.8, 0.8), loaded)
+    np.testing.assert_allclose(by_place(bodies_of(*layers))[SXX:], by_place([alone])[SXX:], rtol=1e-9)
+
+
+def test_a_surcharge_that_would_be_lost_is_refused():
+    loaded = {"initial_stress": {"kind": "geostatic", "surcharge": 500.0}}
+    with pytest.raises(InputError, match=r"body\.0\.initial_stress\.surcharge = 500: .* give it to the body on top"):
+        bodies_of((box(0.5, 0.0, 0.8, 0.5), loaded), (box(0.5, 0.5, 0.8, 0.8), {}))
+    with pytest.raises(InputError, match="a surcharge belongs to kind = 'geostatic'"):
+        bodies_of((box(0.5, 0.0, 0.8, 0.5), {"initial_stress": {"kind": "uniform", "surcharge": 500.0}}))
 
 
 def test_a_uniform_pressure_and_no_stress_are_what_they_say():

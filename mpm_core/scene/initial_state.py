@@ -11,6 +11,7 @@ from grainlaw.materials.law import Law
 from grainlaw.mpm_core.body import POINTS_AT_ONCE, Body
 from grainlaw.mpm_core.kernels.positions import put_density, put_positions
 from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, REMAINDERS, SXX, SYY, SZZ, VX, VY, allocate
+from grainlaw.mpm_core.scene.geostatic import vertical_stresses
 from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
 from grainlaw.mpm_core.scene.shapes import lattice
 
@@ -26,9 +27,12 @@ def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
     bodies: list[Body] = []
     positions = [_positions(scene, number, section) for number, section in enumerate(scene.body)]
     _refuse_overlap(scene, positions)
+    vertical = vertical_stresses(scene, positions)
     first_id = 0
     for number, section in enumerate(scene.body):
-        body = _build(scene, section, positions[number], f"body.{number}", first_id, keeps_shear_strain)
+        body = _build(
+            scene, section, positions[number], vertical[number], f"body.{number}", first_id, keeps_shear_strain
+        )
         first_id += body.count
         bodies.append(body)
     return bodies
@@ -63,6 +67,7 @@ def _build(
     scene: Scene,
     section: BodySection,
     positions: NDArray[np.float64],
+    vertical: NDArray[np.float64],
     name: str,
     first_id: int,
     keeps_shear_strain: bool,
@@ -77,34 +82,24 @@ def _build(
     points[VX], points[VY] = section.velocity
     put_density(points, section.density)
     spacing = scene.grid.cell_size / section.points_per_cell**0.5
-    weight = -section.density * scene.gravity[1]
-    points[SXX], points[SYY], points[SZZ] = _initial_stress(section.initial_stress, positions, spacing, weight)
+    points[SXX], points[SYY], points[SZZ] = _initial_stress(section.initial_stress, vertical)
     _warn_without_stiffness(law, parameters, points, f"{scene.source}: {name}")
     _initialise_state(law, parameters, points)
     return Body(name, law, parameters, storage, len(positions), section.density * spacing**2, first_id)
 
 
 def _initial_stress(
-    section: InitialStressSection, positions: NDArray[np.float64], spacing: float, weight: float
+    section: InitialStressSection, vertical: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Normal stresses [Pa] along x, y and z; `weight` is rho g downwards [N/m3]."""
+    """Normal stresses [Pa] along x, y and z; `vertical` is the geostatic one along y, shape (n,)."""
     if section.kind == "uniform":
-        pressure = np.full(len(positions), section.pressure)
+        pressure = np.full(len(vertical), section.pressure)
         return -pressure, -pressure, -pressure
     if section.kind == "geostatic":
-        vertical = -weight * _depth(positions, spacing)
         horizontal = section.horizontal_ratio * vertical
         return horizontal, vertical, section.out_of_plane_ratio * (horizontal + vertical)
-    nothing = np.zeros(len(positions))
+    nothing = np.zeros(len(vertical))
     return nothing, nothing, nothing
-
-
-def _depth(positions: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
-    """Depth of each lattice point below the top of its own column of points [m]."""
-    column = np.round((positions[:, 0] - positions[:, 0].min()) / spacing).astype(int)
-    top = np.full(column.max() + 1, -np.inf)
-    np.maximum.at(top, column, positions[:, 1])
-    return np.asarray(top[column] + 0.5 * spacing - positions[:, 1])
 
 
 def _warn_without_stiffness(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64], where: str) -> None:

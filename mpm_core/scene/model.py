@@ -155,7 +155,7 @@ class InitialStressSection(Section):
     """The stress of a body at the start."""
 
     kind: Literal["none", "uniform", "geostatic"] = Field(
-        default="none", description="no stress, a uniform pressure, or the weight of the material above"
+        default="none", description="no stress, a uniform pressure, or the weight of the material above, of all bodies"
     )
     pressure: float = Field(default=0.0, ge=0, description="pressure of kind = 'uniform' [Pa]")
     horizontal_ratio: float = Field(default=1.0, ge=0, description="sigma_xx/sigma_yy of kind = 'geostatic' [1]")
@@ -164,6 +164,18 @@ class InitialStressSection(Section):
         ge=0,
         description="sigma_zz/(sigma_xx + sigma_yy) of kind = 'geostatic'; 0.5 with ratio 1: isotropic [1]",
     )
+    surcharge: float = Field(
+        default=0.0,
+        ge=0,
+        description="load on the body where nothing covers it, for kind = 'geostatic'; what lies below carries it, "
+        "too [Pa]",
+    )
+
+    @model_validator(mode="after")
+    def _surcharge_belongs_to_geostatic(self) -> "InitialStressSection":
+        if self.surcharge > 0 and self.kind != "geostatic":
+            raise ValueError("a surcharge belongs to kind = 'geostatic', and to no other")
+        return self
 
 
 class BodySection(Section):

@@ -1,0 +1,148 @@
+"""Geostatic stress: the weight of the material, of all bodies, that rests on a point."""
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grainlaw.materials import InputError
+from grainlaw.mpm_core.scene.model import Scene
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class _Squares(NamedTuple):
+    """The squares that the points of some bodies stand for, in units in which edges and centres are whole numbers."""
+
+    left: Integers
+    bottom: Integers
+    size: Integers
+    body: Integers
+
+
+def vertical_stresses(scene: Scene, positions: list[Floats]) -> list[Floats]:
+    """Vertical stress [Pa], tension positive, of the points of each body of `scene` at `positions`, shape (n, 2) [m].
+
+    It is the weight of the unbroken material above in the same column, and the surcharge on top of it. A gap narrower
+    than a cell does not break a column: across it, bodies touch through the grid.
+
+    Raises InputError for a surcharge on a body that is covered by others and has none of it.
+    """
+    squares = _squares(scene, positions)
+    stresses = []
+    under_others = None
+    for number, section in enumerate(scene.body):
+        if section.initial_stress.kind != "geostatic":
+            stresses.append(np.zeros(len(positions[number])))
+        elif _stands_alone(squares, number):
+            spacing = scene.grid.cell_size / section.points_per_cell**0.5
+            depth = _depth(positions[number], spacing, scene.grid.cell_size)
+            stresses.append(scene.gravity[1] * section.density * depth - section.initial_stress.surcharge)
+        else:
+            under_others = under_others or _weight_and_surcharge(scene, squares)
+            weight, surcharge = (values[squares.body == number] for values in under_others)
+            _refuse_lost_surcharge(number, section.initial_stress.surcharge, surcharge)
+            stresses.append(-(weight + surcharge))
+    return stresses
+
+
+def _refuse_lost_surcharge(number: int, surcharge: float, carried: Floats) -> None:
+    if carried.max() < surcharge * (1.0 - 1e-12):
+        raise InputError(
+            f"body.{number}.initial_stress.surcharge = {surcharge:g}: the body is covered by others everywhere; "
+            "give it to the body on top, from which those below take it over"
+        )
+
+
+def _stands_alone(squares: _Squares, number: int) -> bool:
+    """Whether no other body shares a column with this one."""
+    own = squares.body == number
+    first, last = squares.left[own].min(), (squares.left + squares.size)[own].max()
+    shares = (squares.left < last) & (squares.left + squares.size > first) & ~own
+    return not shares.any()
+
+
+def _depth(positions: Floats, spacing: float, cell_size: float) -> Floats:
+    """Depth of each lattice point, ordered by columns, below the top of the unbroken material above it [m]."""
+    column = np.round((positions[:, 0] - positions[:, 0].min()) / spacing)
+    gap = np.diff(positions[:, 1]) - spacing
+    breaks = (np.diff(column) != 0) | (gap > (1.0 - 1e-6) * cell_size)
+    run = np.concatenate([[0], np.cumsum(breaks)])
+    top = positions[np.append(np.flatnonzero(breaks), len(positions) - 1), 1]
+    return np.asarray(top[run] + 0.5 * spacing - positions[:, 1])
+
+
+def _units_per_cell(scene: Scene) -> int:
+    return 2 * math.lcm(*(math.isqrt(section.points_per_cell) for section in scene.body))
+
+
+def _squares(scene: Scene, positions: list[Floats]) -> _Squares:
+    units = _units_per_cell(scene)
+    parts = []
+    for number, section in enumerate(scene.body):
+        size = units // math.isqrt(section.points_per_cell)
+        spacing = scene.grid.cell_size * size / units
+        indices = np.round((positions[number] - scene.grid.lower) / spacing - 0.5).astype(np.int64)
+        same = np.ones(len(indices), np.int64)
+        parts.append(_Squares(size * indices[:, 0], size * indices[:, 1], size * same, number * same))
+    return _Squares(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+
+
+def _weight_and_surcharge(scene: Scene, squares: _Squares) -> tuple[Floats, Floats]:
+    """Weight above, and surcharge on top of it, at each point [Pa]: means over the columns that its square covers."""
+    units = _units_per_cell(scene)
+    unit = scene.grid.cell_size / units
+    specific_weight = np.array([-scene.gravity[1] * section.density * unit for section in scene.body])
+    surcharges = np.array([section.initial_stress.surcharge for section in scene.body])
+    weight, surcharge = np.zeros(len(squares.left)), np.zeros(len(squares.left))
+    for width, points in _columns(squares):
+        share = width / squares.size[points]
+        body = squares.body[points]
+        above, top = _down_the_column(squares.bottom[points], squares.size[points], specific_weight[body], units)
+        weight[points] += share * above
+        surcharge[points] += share * surcharges[body[top]]
+    return weight, surcharge
+
+
+def _columns(squares: _Squares) -> Iterator[tuple[int, Integers]]:
+    """Width of, and points in, each of the columns into which all edges of squares divide the plane."""
+    edges = np.unique(np.concatenate([squares.left, squares.left + squares.size]))
+    first = np.searchsorted(edges, squares.left)
+    covered = np.searchsorted(edges, squares.left + squares.size) - first
+    points = np.repeat(np.arange(len(first)), covered)
+    column = np.arange(len(points)) - np.repeat(np.cumsum(covered) - covered - first, covered)
+    order = np.argsort(column, kind="stable")
+    column, points = column[order], points[order]
+    starts = np.flatnonzero(np.diff(column, prepend=-1))
+    for start, members in zip(starts, np.split(points, starts[1:]), strict=True):
+        yield int(edges[column[start] + 1] - edges[column[start]]), members
+
+
+def _down_the_column(
+    bottom: Integers, size: Integers, specific_weight: Floats, widest_gap: int
+) -> tuple[Floats, Integers]:
+    """Weight above the centre of each square [Pa], and the topmost square of its unbroken material.
+
+    `specific_weight` is in Pa for a unit of length. Where squares of bodies with other spacings overlap, the material
+    is their mean.
+    """
+    count = len(bottom)
+    levels = np.concatenate([bottom + size, bottom + size // 2, bottom])
+    enters = np.repeat([1, 0, -1], count)
+    order = np.argsort(-levels, kind="stable")
+    lengths = -np.diff(levels[order], append=levels.min())
+    present = np.cumsum(enters[order])
+    sum_of_weights = np.cumsum((enters * np.tile(specific_weight, 3))[order])
+    density = np.where(present > 0, sum_of_weights / np.maximum(present, 1), 0.0)
+    above = np.cumsum(density * lengths) - density * lengths
+    breaks = (present == 0) & (lengths >= widest_gap)
+    begins = np.concatenate([[0], np.flatnonzero(breaks[:-1]) + 1])
+    begin = begins[np.searchsorted(begins, np.arange(3 * count), side="right") - 1]
+    at_centre = np.empty(3 * count, np.int64)
+    at_centre[order] = np.arange(3 * count)
+    at_centre = at_centre[count : 2 * count]
+    first = begin[at_centre]
+    return above[at_centre] - above[first], order[first] % count
