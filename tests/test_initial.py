@@ -133,6 +133,36 @@ def test_a_surcharge_that_would_be_lost_is_refused():
         bodies_of((box(0.5, 0.0, 0.8, 0.5), {"initial_stress": {"kind": "uniform", "surcharge": 500.0}}))
 
 
+TABLE = {"kind": "table", "depth": [0.0, 0.2, 0.8], "vertical_stress": [100.0, 4100.0, 5300.0], "horizontal_ratio": 0.5}
+
+
+def test_a_table_gives_the_vertical_stress_over_depth_below_the_free_top():
+    (alone,) = bodies_of((box(0.5, 0.0, 0.8, 0.8), {"initial_stress": TABLE}))
+    depth = 0.8 - alone.points[Y]
+    vertical = -np.where(depth < 0.2, 100.0 + 2e4 * depth, 3700.0 + 2e3 * depth)
+    np.testing.assert_allclose(alone.points[SYY], vertical, rtol=1e-9)
+    np.testing.assert_allclose(alone.points[SXX], 0.5 * vertical, rtol=1e-9)
+    stress = {"initial_stress": TABLE}
+    layers = bodies_of((box(0.5, 0.0, 0.8, 0.5), stress), (box(0.5, 0.5, 0.8, 0.8), stress | {"density": 900.0}))
+    np.testing.assert_allclose(by_place(layers)[SXX : SXY + 1], by_place([alone])[SXX : SXY + 1], rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"depth": [0.0, 0.2, 0.7]}, r"body\.0\.initial_stress\.depth spans 0 to 0\.7 m, the points .* 0\.79375 m"),
+        ({"depth": [0.0, 0.8]}, "lists of one length"),
+        ({"vertical_stress": None}, "needs depth and vertical_stress"),
+        ({"depth": [0.0, 0.9, 0.8]}, "depth must increase"),
+        ({"vertical_stress": [0.0, -1.0, 2.0]}, "vertical_stress holds -1 Pa; allowed: >= 0"),
+        ({"kind": "geostatic"}, "depth and vertical_stress belong to kind = 'table'"),
+    ],
+)
+def test_a_table_that_says_too_little_is_refused(changes, words):
+    with pytest.raises(InputError, match=words):
+        bodies_of((box(0.5, 0.0, 0.8, 0.8), {"initial_stress": TABLE | changes}))
+
+
 def test_a_uniform_pressure_and_no_stress_are_what_they_say():
     uniform = column(**{"body.0.initial_stress": {"kind": "uniform", "pressure": 750.0}}).points
     np.testing.assert_array_equal(uniform[[SXX, SYY, SZZ]], -750.0)

@@ -1,4 +1,4 @@
-"""Geostatic stress: the weight of the material, of all bodies, that rests on a point."""
+"""Stress over depth: the weight of the material, of all bodies, that rests on a point, or a table."""
 
 import math
 from collections.abc import Iterator
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grainlaw.materials import InputError
-from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -23,30 +23,53 @@ class _Squares(NamedTuple):
     body: Integers
 
 
+class _Above(NamedTuple):
+    """What rests on each point: weight and surcharge [Pa]; and the depth below the top of it [m]."""
+
+    weight: Floats
+    surcharge: Floats
+    depth: Floats
+
+
 def vertical_stresses(scene: Scene, positions: list[Floats]) -> list[Floats]:
     """Vertical stress [Pa], tension positive, of the points of each body of `scene` at `positions`, shape (n, 2) [m].
 
-    It is the weight of the unbroken material above in the same column, and the surcharge on top of it. A gap narrower
-    than a cell does not break a column: across it, bodies touch through the grid.
+    With kind = "geostatic" it is the weight of the unbroken material above in the same column, and the surcharge on
+    top of it. A gap narrower than a cell does not break a column: across it, bodies touch through the grid. With kind =
+    "table" it is a function of the depth below the top of that material; with others it is zero.
 
-    Raises InputError for a surcharge on a body that is covered by others and has none of it.
+    Raises InputError for a surcharge on a body that is covered by others and has none of it, and for a table that does
+    not span the depths of its body.
     """
     squares = _squares(scene, positions)
     stresses = []
     under_others = None
     for number, section in enumerate(scene.body):
-        if section.initial_stress.kind != "geostatic":
+        own = squares.body == number
+        if section.initial_stress.kind not in ("geostatic", "table"):
             stresses.append(np.zeros(len(positions[number])))
-        elif _stands_alone(squares, number):
-            spacing = scene.grid.cell_size / section.points_per_cell**0.5
-            depth = _depth(positions[number], spacing, scene.grid.cell_size)
-            stresses.append(scene.gravity[1] * section.density * depth - section.initial_stress.surcharge)
+            continue
+        if _stands_alone(squares, own):
+            above = _above_in_one_body(scene, section, positions[number])
         else:
-            under_others = under_others or _weight_and_surcharge(scene, squares)
-            weight, surcharge = (values[squares.body == number] for values in under_others)
-            _refuse_lost_surcharge(number, section.initial_stress.surcharge, surcharge)
-            stresses.append(-(weight + surcharge))
+            under_others = under_others or _above_in_all_bodies(scene, squares)
+            above = _Above(*(values[own] for values in under_others))
+        if section.initial_stress.kind == "table":
+            stresses.append(-_from_table(number, section.initial_stress, above.depth))
+        else:
+            _refuse_lost_surcharge(number, section.initial_stress.surcharge, above.surcharge)
+            stresses.append(-(above.weight + above.surcharge))
     return stresses
+
+
+def _from_table(number: int, section: InitialStressSection, depth: Floats) -> Floats:
+    depths, values = np.array(section.depth), np.array(section.vertical_stress)
+    if depth.min() < depths[0] or depth.max() > depths[-1]:
+        raise InputError(
+            f"body.{number}.initial_stress.depth spans {depths[0]:g} to {depths[-1]:g} m, "
+            f"the points of the body {depth.min():g} to {depth.max():g} m"
+        )
+    return np.interp(depth, depths, values)
 
 
 def _refuse_lost_surcharge(number: int, surcharge: float, carried: Floats) -> None:
@@ -57,12 +80,18 @@ def _refuse_lost_surcharge(number: int, surcharge: float, carried: Floats) -> No
         )
 
 
-def _stands_alone(squares: _Squares, number: int) -> bool:
-    """Whether no other body shares a column with this one."""
-    own = squares.body == number
+def _stands_alone(squares: _Squares, own: NDArray[np.bool_]) -> bool:
+    """Whether no other body shares a column with the one that has the squares `own`."""
     first, last = squares.left[own].min(), (squares.left + squares.size)[own].max()
     shares = (squares.left < last) & (squares.left + squares.size > first) & ~own
     return not shares.any()
+
+
+def _above_in_one_body(scene: Scene, section: BodySection, positions: Floats) -> _Above:
+    spacing = scene.grid.cell_size / section.points_per_cell**0.5
+    depth = _depth(positions, spacing, scene.grid.cell_size)
+    weight = -scene.gravity[1] * section.density * depth
+    return _Above(weight, np.full(len(depth), section.initial_stress.surcharge), depth)
 
 
 def _depth(positions: Floats, spacing: float, cell_size: float) -> Floats:
@@ -91,20 +120,22 @@ def _squares(scene: Scene, positions: list[Floats]) -> _Squares:
     return _Squares(*(np.concatenate(values) for values in zip(*parts, strict=True)))
 
 
-def _weight_and_surcharge(scene: Scene, squares: _Squares) -> tuple[Floats, Floats]:
-    """Weight above, and surcharge on top of it, at each point [Pa]: means over the columns that its square covers."""
+def _above_in_all_bodies(scene: Scene, squares: _Squares) -> _Above:
+    """Means over the columns that the square of each point covers."""
     units = _units_per_cell(scene)
     unit = scene.grid.cell_size / units
     specific_weight = np.array([-scene.gravity[1] * section.density * unit for section in scene.body])
     surcharges = np.array([section.initial_stress.surcharge for section in scene.body])
-    weight, surcharge = np.zeros(len(squares.left)), np.zeros(len(squares.left))
+    weight, surcharge, depth = np.zeros((3, len(squares.left)))
+    upper, centre = squares.bottom + squares.size, squares.bottom + squares.size // 2
     for width, points in _columns(squares):
         share = width / squares.size[points]
         body = squares.body[points]
         above, top = _down_the_column(squares.bottom[points], squares.size[points], specific_weight[body], units)
         weight[points] += share * above
         surcharge[points] += share * surcharges[body[top]]
-    return weight, surcharge
+        depth[points] += share * (upper[points[top]] - centre[points]) * unit
+    return _Above(weight, surcharge, depth)
 
 
 def _columns(squares: _Squares) -> Iterator[tuple[int, Integers]]:

@@ -91,11 +91,11 @@ def _build(
 def _initial_stress(
     section: InitialStressSection, vertical: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Normal stresses [Pa] along x, y and z; `vertical` is the geostatic one along y, shape (n,)."""
+    """Normal stresses [Pa] along x, y and z; `vertical` is the one along y over depth, shape (n,)."""
     if section.kind == "uniform":
         pressure = np.full(len(vertical), section.pressure)
         return -pressure, -pressure, -pressure
-    if section.kind == "geostatic":
+    if section.kind in ("geostatic", "table"):
         horizontal = section.horizontal_ratio * vertical
         return horizontal, vertical, section.out_of_plane_ratio * (horizontal + vertical)
     nothing = np.zeros(len(vertical))

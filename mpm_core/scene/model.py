@@ -1,5 +1,6 @@
 """The scene: everything that a run needs, as a validated model that reads and writes TOML."""
 
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -154,15 +155,19 @@ class SleepSection(Section):
 class InitialStressSection(Section):
     """The stress of a body at the start."""
 
-    kind: Literal["none", "uniform", "geostatic"] = Field(
-        default="none", description="no stress, a uniform pressure, or the weight of the material above, of all bodies"
+    kind: Literal["none", "uniform", "geostatic", "table"] = Field(
+        default="none",
+        description="no stress, a uniform pressure, the weight of the material above, of all bodies, or a table over "
+        "depth",
     )
     pressure: float = Field(default=0.0, ge=0, description="pressure of kind = 'uniform' [Pa]")
-    horizontal_ratio: float = Field(default=1.0, ge=0, description="sigma_xx/sigma_yy of kind = 'geostatic' [1]")
+    horizontal_ratio: float = Field(
+        default=1.0, ge=0, description="sigma_xx/sigma_yy, unless the stress is uniform [1]"
+    )
     out_of_plane_ratio: float = Field(
         default=0.5,
         ge=0,
-        description="sigma_zz/(sigma_xx + sigma_yy) of kind = 'geostatic'; 0.5 with ratio 1: isotropic [1]",
+        description="sigma_zz/(sigma_xx + sigma_yy), unless the stress is uniform; 0.5 with ratio 1: isotropic [1]",
     )
     surcharge: float = Field(
         default=0.0,
@@ -170,6 +175,31 @@ class InitialStressSection(Section):
         description="load on the body where nothing covers it, for kind = 'geostatic'; what lies below carries it, "
         "too [Pa]",
     )
+
+    depth: list[float] | None = Field(
+        default=None, min_length=2, description="increasing depths of kind = 'table', below the free top [m]"
+    )
+    vertical_stress: list[float] | None = Field(
+        default=None,
+        min_length=2,
+        description="vertical stress at each `depth`, compression positive; linear between them [Pa]",
+    )
+
+    @model_validator(mode="after")
+    def _table_is_complete(self) -> "InitialStressSection":
+        if self.kind != "table":
+            if self.depth is not None or self.vertical_stress is not None:
+                raise ValueError("depth and vertical_stress belong to kind = 'table', and to no other")
+            return self
+        if self.depth is None or self.vertical_stress is None or len(self.depth) != len(self.vertical_stress):
+            raise ValueError("kind = 'table' needs depth and vertical_stress, lists of one length")
+        if any(second <= first for first, second in pairwise(self.depth)):
+            raise ValueError("depth must increase from value to value")
+        if min(self.vertical_stress) < 0:
+            raise ValueError(
+                f"vertical_stress holds {min(self.vertical_stress):g} Pa; allowed: >= 0 (compression is positive)"
+            )
+        return self
 
     @model_validator(mode="after")
     def _surcharge_belongs_to_geostatic(self) -> "InitialStressSection":
