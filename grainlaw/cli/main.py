@@ -3,6 +3,7 @@
 import io
 import sys
 import warnings
+from functools import cache
 from importlib.metadata import version
 from typing import Annotated, TextIO
 
@@ -88,11 +89,16 @@ def _show_warning(
     file: TextIO | None = None,
     line: str | None = None,
 ) -> None:
-    """What is said about the request in one line; anything else as Python does."""
+    """What is said about the request in one line, once; anything else as Python does."""
     if issubclass(category, InputWarning):
-        typer.echo(f"warning: {message}", err=True)
+        _warn_once(str(message))
     else:
         (file or sys.stderr).write(warnings.formatwarning(message, category, filename, lineno, line))
+
+
+@cache
+def _warn_once(message: str) -> None:
+    typer.echo(f"warning: {message}", err=True)
 
 
 def _fail(error: Exception, code: int) -> None:
