@@ -8,9 +8,9 @@ from time import process_time
 from typing import Any
 
 from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.scene.shipped import shipped_scenes
 from grainlaw.mpm_core.stepping.plan import plan
 from grainlaw.mpm_core.stepping.run import run
-from grainlaw.validation.scenes import SCENES as FOLDER
 
 # Shipped scenes, on cells that make a run take seconds.
 SCENES: dict[str, dict[str, Any]] = {
@@ -44,7 +44,7 @@ def forecasts(scenes: Mapping[str, Mapping[str, Any]], threads: int = 1) -> list
 
 
 def _forecast(name: str, changes: dict[str, Any], threads: int) -> Forecast:
-    scene = Scene.load(FOLDER / f"{name}.toml", {**changes, "output.pictures": False})
+    scene = Scene.load(shipped_scenes()[name], {**changes, "output.pictures": False})
     planned = plan(scene, threads)
     with TemporaryDirectory() as folder:
         cpu = process_time()

@@ -1,14 +1,14 @@
 """Simulations for validation cases: a scene with changes, led to a time."""
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from grainlaw.materials import InputError, get_material
+from grainlaw.materials import get_material
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.scene.shipped import shipped_scenes
 from grainlaw.mpm_core.simulation import Simulation
 
 # The paper's materials: a law and its parameter set.
@@ -18,15 +18,11 @@ PAPER = {
     "MCC OCR 4": ("modified_cam_clay", "paper_ocr4"),
 }
 DENSITY = 1500.0
-SCENES = Path(__file__).resolve().parents[1] / "scenes"
 
 
 def shipped_simulation(name: str, changes: dict[str, Any] | None = None) -> Simulation:
     """A shipped scene with values by dotted key set on top."""
-    path = SCENES / f"{name}.toml"
-    if not path.is_file():
-        raise InputError(f"{path} is missing: this case needs a checkout, whose scenes it runs")
-    return Simulation(Scene.load(path, changes))
+    return Simulation(Scene.load(shipped_scenes()[name], changes))
 
 
 def simulation_of(content: dict[str, Any]) -> Simulation:

@@ -1,8 +1,8 @@
 """One frame as one VTU file: a vertex cell per point, written and read through meshio.
 
-meshio is no longer developed, so nothing outside this module knows of it. Its writer has no place for units and time;
-they are put into the finished XML, where VTK keeps them: the unit of each array under the information key
-`UNITS_LABEL`, time and step as field data (`TimeValue` is the name that the readers of VTK look for).
+meshio is no longer developed, so nothing but this module and `scene.mesh_file` knows of it. Its writer has no place for
+units and time; they are put into the finished XML, where VTK keeps them: the unit of each array under the information
+key `UNITS_LABEL`, time and step as field data (`TimeValue` is the name that the readers of VTK look for).
 """
 
 from pathlib import Path

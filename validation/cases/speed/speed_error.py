@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.scene.shipped import shipped_scenes
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
 from grainlaw.validation.cases.collapses.column import SCENES
 from grainlaw.validation.cases.speed.exact import cost_and_error, exact_settings
@@ -11,7 +12,6 @@ from grainlaw.validation.cases.speed.front import error, mean_observables, paret
 from grainlaw.validation.cases.speed.setting import COLUMNS, Outcome, Setting
 from grainlaw.validation.cases.speed.store import made_with_other_kernels, outcomes
 from grainlaw.validation.cases.speed.sweep import references, settings
-from grainlaw.validation.scenes import SCENES as FOLDER_OF_SCENES
 
 # Outcomes stay here: a sweep that was stopped goes on, and the report says how many were made with other kernels.
 FOLDER = Path("runs/speed_error")
@@ -54,7 +54,7 @@ def promised_setting(material: str, accuracy: str, column: str, cell_size: float
     shape = {"kind": "rectangle", "lower": lower, "upper": upper}
     left_open = {"grid.cell_size": cell_size, "body.0.points_per_cell": None}
     changes = {"accuracy": accuracy, "body.0.shape": shape, **left_open}
-    scene = Scene.load(FOLDER_OF_SCENES / f"{SCENES[material]}.toml", changes)
+    scene = Scene.load(shipped_scenes()[SCENES[material]], changes)
     chosen = scene.grid.cell_size, scene.body[0].points_per_cell, scene.time.safety
     return Setting(material, column, *chosen, precision=scene.precision, time_constant=scene.transfer.time_constant)
 
