@@ -29,11 +29,16 @@ STATEMENTS_VERSION = 2
 
 @dataclass(frozen=True)
 class ParameterSet:
-    """Named values for a law, with their source and the bulk density [kg/m3] at rest under a given pressure [Pa]."""
+    """Named values for a law, with their source and the bulk density [kg/m3] at rest under a given pressure [Pa].
+
+    element_settings  by the names of element tests, the settings whose defaults would lead this material out of the
+                      range for which it is meant, with values that do not
+    """
 
     parameters: Any
     source: str
     density: Callable[[float, Any], float]
+    element_settings: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
 def _no_inconsistency(parameters: Any) -> str:

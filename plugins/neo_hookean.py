@@ -133,6 +133,8 @@ LAW = Law(
             source="generalised vortex (Kamojjala et al. 2015; de Vaucorbeil et al. 2020): E = 1 MPa, nu = 0.3, "
             "rho = 1000 kg/m3",
             density=lambda pressure, parameters: 1000.0,
+            # a solid is sheared by 0.4, not by the 40 of grains that flow
+            element_settings={"constant-pressure-shear": {"slow_inertial_number": 1e-5, "fast_inertial_number": 1e-3}},
         )
     },
 )

@@ -3,6 +3,9 @@
 import math
 from typing import NamedTuple
 
+# Of x, by which its bracket is too narrow to be halved in earnest.
+ROUND_OFF = 1e-15
+
 
 class Search(NamedTuple):
     """The search for a root: the next x to try, and what is known from the previous ones."""
@@ -39,7 +42,12 @@ def narrowed(search: Search, residual: float) -> Search:
     if math.isfinite(lower) and math.isfinite(upper):
         if stalled or not lower < proposed < upper:
             proposed = 0.5 * (lower + upper)
-    elif not abs(proposed - x) <= expansion:
+    elif abs(residual) >= abs(search.previous_residual) or not abs(proposed - x) <= expansion:
         proposed = x + expansion if residual < 0.0 else x - expansion
         expansion *= 4.0
     return Search(proposed, slope, lower, upper, expansion, x, residual)
+
+
+def is_shut(search: Search, size: float) -> bool:
+    """Whether there is nothing left between lower and upper; `size` is that of quantities to which x is added."""
+    return search.upper - search.lower <= ROUND_OFF * (abs(search.x) + size)

@@ -47,13 +47,14 @@ def prepared(
     """
     law = get_material(law_name)
     values, label, source = base_values(law, parameters)
+    own = _own_settings(law, parameters, test)
     of_law, of_test = _sorted_out(law, test, assignments)
     if of_law:
         changes = " with " + ", ".join(f"{name} = {value:g}" for name, value in of_law.items())
         label, source = label + changes, source + changes
     specimen = Specimen(law, law.checked({**values, **of_law}, law.name), label, source)
     shared = {name: value for name, value in specimen.parameters._asdict().items() if name in test.settings._fields}
-    return specimen, checked_parameters(test.name, test.settings, {**of_test, **shared})
+    return specimen, checked_parameters(test.name, test.settings, {**own, **of_test, **shared})
 
 
 def base_values(law: Law, parameters: str | Path | None) -> tuple[dict[str, Any], str, str]:
@@ -73,6 +74,13 @@ def base_values(law: Law, parameters: str | Path | None) -> tuple[dict[str, Any]
         raise InputError(f"{law.name} has no parameter set '{name}'; {nearest_name(name, law.parameter_sets)}")
     found = law.parameter_sets[name]
     return found.parameters._asdict(), label, f"set '{name}' ({found.source})"
+
+
+def _own_settings(law: Law, parameters: str | Path | None, test: ElementTest) -> Mapping[str, float]:
+    """The settings that the parameter set, of values from a file the law's first one, has for a test."""
+    sets = law.parameter_sets
+    chosen = sets.get(str(parameters)) or next(iter(sets.values()), None)
+    return chosen.element_settings.get(test.name, {}) if chosen else {}
 
 
 def _read_values(path: Path) -> dict[str, Any]:
