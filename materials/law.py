@@ -37,7 +37,7 @@ class ParameterSet:
 
     parameters: Any
     source: str
-    density: Callable[[float, Any], float]
+    density: Callable[[float, Any], float] = field(repr=False)
     element_settings: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 

@@ -84,7 +84,8 @@ class Registry:
         for refusal in self.refusals:
             if refusal.name == name:
                 raise InputError(str(refusal))
-        raise InputError(f"unknown law '{name}'; {nearest_name(name, self.laws)}")
+        hint = "a law in a file of its own needs --plugin FILE.py, in Python gl.load_plugin"
+        raise InputError(f"unknown law '{name}'; {nearest_name(name, self.laws)} ({hint})")
 
     def _register_plugin(self, module: ModuleType, name: str, origin: str) -> None:
         # One manager per plugin: an exception in one hook then stops no other plugin.

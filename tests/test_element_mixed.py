@@ -74,8 +74,8 @@ def test_stress_beyond_yield_stops_with_component_and_time(tmp_path):
     ("text", "message"),
     [
         ("time_step = ", "cannot be read"),
-        ("time_step = 0.1\nstage = []", "stage: "),
-        ("time_step = -0.1\n[[stage]]\nduration = 1.0", "time_step: Input should be greater than 0"),
+        ("time_step = 0.1\nstage = []", "stage = []: allowed: 1 or more entries"),
+        ("time_step = -0.1\n[[stage]]\nduration = 1.0", "time_step = -0.1: allowed: > 0"),
         ("time_step = 0.1\n[[stage]]\nduraton = 1.0", "did you mean 'duration'"),
         ("time_stp = 0.1\n[[stage]]\nduration = 1.0", "time_step"),
         ("time_step = 0.1\n[[stage]]\nduration = 1.0\nstrain_rate = { yx = 1.0 }", "'xx', 'yy', 'zz', 'xy', 'yz'"),

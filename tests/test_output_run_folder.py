@@ -107,7 +107,7 @@ def test_a_run_folder_gives_frames_with_units_history_and_times(tmp_path):
         (lambda f: (f / "history.csv").write_text("t,dt\n"), lambda r: r.history, "holds no row yet"),
         (lambda f: None, lambda r: r.summary, "the run has not finished"),
         (lambda f: (f / "summary.json").write_text("{"), lambda r: r.summary, "summary.json cannot be read"),
-        (lambda f: (f / "summary.json").write_text("{}"), lambda r: r.summary, "scene: Field required"),
+        (lambda f: (f / "summary.json").write_text("{}"), lambda r: r.summary, "'scene' is missing"),
     ],
 )
 def test_what_is_missing_or_broken_is_said_in_one_line(tmp_path, break_it, read, message):

@@ -54,8 +54,31 @@ def test_law_says_what_it_declares():
     assert law.parameter_sets["paper"].parameters.bulk_modulus == 392e3
     assert "Source: " in law.documentation
     assert "392000" in repr(law)
-    with pytest.raises(gl.InputError, match="did you mean 'mu_i_lc'"):
+    with pytest.raises(gl.InputError, match=r"did you mean 'mu_i_lc'\? .* gl.load_plugin"):
         gl.law("mu_i_lcc")
+
+
+def test_parameter_sets_are_a_table_with_their_sources():
+    sets = gl.law("mu_i_lc").parameter_sets
+    assert dict(sets) == dict(gl.law("mu_i_lc").definition.parameter_sets)
+    for text in (repr(sets), unescape(sets._repr_html_())):
+        assert "bulk_modulus" in text
+        assert "392000" in text
+        assert all(name in text and found.source in text for name, found in sets.items())
+        assert "function" not in text
+    assert "function" not in repr(sets["paper"])
+
+
+def test_a_simulation_says_what_it_is():
+    simulation = gl.Simulation(BLOCK)
+    simulation.advance_to(1e-3)
+    assert repr(simulation) == f"Simulation('scene'): t = 0.001 s, step {simulation.steps}, 64 points of linear_elastic"
+
+
+def test_a_shipped_scene_is_called_by_its_name_in_messages():
+    assert gl.scenes()["two_discs"].source == gl.Scene("two_discs").source == "two_discs"
+    with pytest.raises(gl.InputError, match=r"^two_discs: grid\.cell_size = -1: "):
+        gl.Scene("two_discs", {"grid.cell_size": -1})
 
 
 def test_element_test_gives_arrays_table_and_picture(tmp_path):

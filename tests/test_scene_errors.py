@@ -30,7 +30,7 @@ FAULTS = {
                           r"material\.linear_elastic needs a value for: bulk_modulus \[Pa\]"),
     "missing table": ({"grid": None}, r"'grid' is missing"),
     "missing key": ({"time.end": None}, r"'time\.end' is missing"),
-    "negative cell size": ({"grid.cell_size": -0.1}, r"grid\.cell_size = -0\.1: .*greater than 0"),
+    "negative cell size": ({"grid.cell_size": -0.1}, r"grid\.cell_size = -0\.1: allowed: > 0\n"),
     "part of a cell": ({"grid.cell_size": 0.07},
                        r"grid: the domain is 1 m along x, not a whole number of cells of 0\.07 m; nearest: 0\.98 m"),
     "domain inside out": ({"grid.upper": [-1.0, 0.8]}, r"grid: the domain is -1 m along x"),
@@ -58,7 +58,7 @@ FAULTS = {
     "friction without coefficient": ({"boundary.bottom": "friction"},
                                      r"boundary\.bottom: kind = 'friction' needs a coefficient"),
     "unstable step": ({"time.step": 0.1}, r"time\.step = 0\.1 s is above the stable step at the start, 0\.02 s"),
-    "endless run": ({"time.end": float("inf")}, r"time\.end = inf: .*finite"),
+    "endless run": ({"time.end": float("inf")}, r"time\.end = inf: allowed: a finite number"),
     "unknown key": ({"time.sfety": 0.3}, r"unknown key 'time\.sfety'; did you mean 'safety'\?"),
     "unknown key of a shape": ({"body.0.shape.lowr": [0.0, 0.0]},
                                r"unknown key 'body\.0\.shape\.lowr'; (did you mean 'lower'\?|valid names: .*lower)"),
@@ -67,11 +67,36 @@ FAULTS = {
                       r"output\.fields: unknown field 'presure'; did you mean 'pressure'\?"),
     "field that no law gives": ({"output.fields": ["solid_fraction"]},
                                 r"output\.fields: 'solid_fraction' needs a law with the parameter 'grain_density'"),
-    "no body": ({"body": []}, r"body = \[\]: .*at least 1"),
-    "body is a number": ({"body": 3}, r"body = 3: .*list"),
-    "points per cell": ({"body.0.points_per_cell": 5}, r"body\.0\.points_per_cell = 5: .*1, 4, 9, 16, 25 or 36"),
-    "truth for a number": ({"body.0.density": True}, r"body\.0\.density = True: .*number"),
-    "text for a number": ({"time.end": "1"}, r"time\.end = '1': .*number"),
+    "no body": ({"body": []}, r"body = \[\]: allowed: 1 or more entries"),
+    "body is a number": ({"body": 3}, r"body = 3: allowed: a list"),
+    "points per cell": ({"body.0.points_per_cell": 5}, r"body\.0\.points_per_cell = 5: allowed: 1, 4, 9, 16, 25 or 36"),
+    "truth for a number": ({"body.0.density": True}, r"body\.0\.density = True: allowed: a number"),
+    "text for a number": ({"time.end": "1"}, r"time\.end = '1': allowed: a number"),
+    "shape without a kind": ({"body.0.shape.kind": None}, r"'body\.0\.shape\.kind' is missing"),
+    "one coordinate": ({"gravity": [1.0]}, r"gravity = \[1\.0\]: entry 1 is missing"),
+    "three coordinates": ({"gravity": [1.0, 2.0, 3.0]}, r"gravity = .*: allowed: 2 or fewer entries"),
+    "list for a text": ({"output.fields": [1]}, r"output\.fields\.0 = 1: allowed: a text"),
+    "text for a truth": ({"output.vtu": "yes"}, r"output\.vtu = 'yes': allowed: true or false"),
+    "misspelt section": ({"grid": None, "gird": {"cell_size": 0.1}},
+                         r"unknown key 'gird'; did you mean 'grid'\?; also 'grid' is missing\n"),
+    "misspelt key that is needed": ({"time": {"edn": 1.0}},
+                                    r"unknown key 'time\.edn'; did you mean 'end'\?; also 'time\.end' is missing\n"),
+    "unknown accuracy and no cell size": ({"accuracy": "5%", "grid.cell_size": None},
+                                          r"accuracy = '5%': allowed: .*; also 'grid\.cell_size' is missing\n"),
+    "accuracy with an unknown law": ({"accuracy": "10%", "grid.cell_size": None, "material": {"mu_i_lk": {}},
+                                      "body.0.material": "mu_i_lk"},
+                                     r"material\.mu_i_lk: unknown law .*'mu_i_lc'.*--plugin FILE\.py"),
+    "accuracy with an unknown parameter": ({"accuracy": "10%", "grid.cell_size": None,
+                                            "material": {"mu_i_lc": {"E": 1.0}}, "body.0.material": "mu_i_lc"},
+                                           r"material\.mu_i_lc has no parameter 'E'"),
+    "endless domain": ({"grid.lower": [-1e308, 0.0], "grid.upper": [1e308, 0.8]}, r"grid: the domain is inf m along x"),
+    "endless shape": ({"body.0.shape.upper": [1e300, 1e300]},
+                      r"body\.0: the shape is 2e\+301 x 2e\+301 points .*memory"),
+    "shape without bounds": ({"body.0.shape": {"kind": "disc", "center": [1e200, 0.0], "radius": 1e308}},
+                             r"body\.0: the shape is inf x inf points .*memory"),
+    "more points than memory": ({"body.0.shape.upper": [1e5, 1e5]}, r"body\.0: the shape is 2e\+06 x 2e\+06 points"),
+    "shape elsewhere": ({"body.0.shape": {"kind": "disc", "center": [1e300, 0.0], "radius": 1.0}},
+                        r"body\.0: the shape lies outside the domain \[0\.0, 0\.0\] to \[1\.0, 0\.8\]"),
     "mesh file": ({"body.0.shape": {"kind": "mesh", "file": "none.vtk"}},
                   r"body\.0\.shape: there is no mesh file .*none\.vtk"),
 }  # fmt: skip
@@ -95,6 +120,8 @@ def test_a_bad_scene_is_refused_in_one_line(tmp_path, monkeypatch, capsys, fault
     line = refused(monkeypatch, capsys, tmp_path / "out", path)
     assert re.search(message, line)
     assert str(path) in line
+    # no word of the library that checks
+    assert not re.search(r"Input should|should have at|valid (number|list|dictionary)|required|extract", line)
 
 
 def test_the_stable_step_in_the_message_is_accepted(tmp_path, monkeypatch, capsys):
@@ -133,8 +160,8 @@ def test_a_file_that_is_no_scene_is_refused_in_one_line(tmp_path, monkeypatch, c
         ("nonsense.key=1", "unknown key 'nonsense'; valid names: accuracy, body, boundary"),
         ("grid.cell_size=big", r"grid\.cell_size = 'big'"),
         ("title.short=1", r"--set title\.short: 'title' is a value, not a table"),
-        ("grid=3", "grid = 3: .*dictionary"),
-        ("body=3", "body = 3: .*list"),
+        ("grid=3", "grid = 3: allowed: a table"),
+        ("body=3", "body = 3: allowed: a list"),
         ("body.3.density=1", r"--set body\.3\.density: '3' is no entry of the list; allowed: 0 to 0"),
         ("body.first.density=1", r"--set body\.first\.density: 'first' is no entry of the list"),
         ("gravity.2=1", r"--set gravity\.2: '2' is no entry of the list; allowed: 0 to 1"),
@@ -152,9 +179,13 @@ def test_the_same_value_set_twice_is_refused(tmp_path, monkeypatch, capsys):
     assert "time.end is given twice: 1 and 2" in refused(monkeypatch, capsys, tmp_path / "out", path, *twice)
 
 
-def test_several_faults_are_counted(tmp_path, monkeypatch, capsys):
-    path = write_scene(tmp_path / "scene.toml", BLOCK, {"grid.cell_size": -1.0, "time.end": -1.0, "gravty": [0, 0]})
-    assert "(and 2 more)" in refused(monkeypatch, capsys, tmp_path / "out", path)
+def test_several_faults_stand_in_the_line_and_very_many_are_counted(tmp_path, monkeypatch, capsys):
+    faults = {"grid.cell_size": -1.0, "time.end": -1.0, "gravty": [0, 0]}
+    path = write_scene(tmp_path / "scene.toml", BLOCK, faults)
+    line = refused(monkeypatch, capsys, tmp_path / "out", path)
+    assert re.search(r"'gravty'.*; also grid\.cell_size = -1\.0: .*; also time\.end = -1\.0: allowed: > 0\n", line)
+    path = write_scene(tmp_path / "scene.toml", BLOCK, faults | {f"key_{number}": 1 for number in range(5)})
+    assert "(and 3 more)" in refused(monkeypatch, capsys, tmp_path / "out", path)
 
 
 @pytest.mark.parametrize("command", ["run", "plan"])

@@ -81,10 +81,11 @@ def test_a_load_that_cannot_be_had_counts_as_none(monkeypatch):
     assert threads.usable_threads(None) == threads.cores()
 
 
-@pytest.mark.parametrize("count", [0, -1, 4096])
-def test_a_number_of_threads_that_the_machine_has_not_is_refused(count):
-    with pytest.raises(InputError, match="this machine has"):
-        threads.usable_threads(count)
+@pytest.mark.parametrize("count", [0, -1, 4096, 1.5, True])
+@pytest.mark.parametrize("asked", [threads.usable_threads, threads.use_threads])
+def test_a_number_of_threads_that_the_machine_has_not_is_refused(count, asked):
+    with pytest.raises(InputError, match=f"threads = {count}: this machine has"):
+        asked(count)
 
 
 def test_peak_memory_is_in_bytes_and_0_where_the_system_does_not_tell(monkeypatch):

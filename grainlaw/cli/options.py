@@ -40,3 +40,8 @@ def numbers(values: dict[str, str], option: str = "--set") -> dict[str, float]:
         except ValueError:
             raise InputError(f"{option} {name}={text}: '{text}' is not a number") from None
     return found
+
+
+def counted(number: int, name: str) -> str:
+    """A number of things, of which one is called `name`."""
+    return f"{number} {name}{'' if number == 1 else 's'}"

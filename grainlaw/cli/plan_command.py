@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from grainlaw.cli.options import PluginFiles, load_plugins
+from grainlaw.cli.options import PluginFiles, counted, load_plugins
 from grainlaw.cli.scene_options import SceneFile, SetValues, load_scene
 
 
@@ -39,7 +39,7 @@ def plan(
         "time step": f"{planned.step:.3g} s at the start (stable: {planned.critical_time_step:.3g} s)",
         "steps": f"about {planned.steps:,}",
         "rate": f"{planned.points / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "
-        f"{planned.threads} thread{'s' if planned.threads > 1 else ''}",
+        f"{counted(planned.threads, 'thread')}",
         "expected duration": f"{planned.wall_time:.1f} s, of which output {planned.output_time:.1f} s",
         "frames": f"{planned.frames}",
         "fields of a frame": ", ".join(planned.fields),

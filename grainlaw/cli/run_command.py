@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from grainlaw.cli.options import PluginFiles, load_plugins
+from grainlaw.cli.options import PluginFiles, counted, load_plugins
 from grainlaw.cli.scene_options import SceneFile, SetValues, load_scene
 
 if TYPE_CHECKING:
@@ -51,9 +51,9 @@ def run(
 def _print_result(folder: Path, summary: "RunSummary") -> None:
     final = summary.final
     typer.echo(
-        f"{summary.scene or folder.name}: t = {summary.simulated_time:g} s, {summary.points} points, "
-        f"{summary.steps} steps in {summary.wall_time:.1f} s "
-        f"({summary.point_steps_per_second / 1e6:.1f} million point-steps/s on {summary.threads} threads)"
+        f"{summary.scene or folder.name}: t = {summary.simulated_time:g} s, {counted(summary.points, 'point')}, "
+        f"{counted(summary.steps, 'step')} in {summary.wall_time:.1f} s "
+        f"({summary.point_steps_per_second / 1e6:.1f} million point-steps/s on {counted(summary.threads, 'thread')})"
     )
     typer.echo(
         f"runout {final.runout:.4f} m, height {final.height:.4f} m, "

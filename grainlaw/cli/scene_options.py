@@ -32,7 +32,9 @@ def load_scene(path: Path, set_values: list[str] | None) -> "Scene":
     from grainlaw.mpm_core.scene.model import Scene
     from grainlaw.mpm_core.scene.shipped import scene_file
 
-    return Scene.load(scene_file(path), {key: _value(text) for key, text in assigned(set_values).items()})
+    values = {key: _value(text) for key, text in assigned(set_values).items()}
+    # A shipped scene is called by its name in messages, not by its place in the installation.
+    return Scene.load(scene_file(path), values, str(path))
 
 
 def _value(text: str) -> Any:

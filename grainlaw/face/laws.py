@@ -52,9 +52,9 @@ class ConstitutiveLaw:
         return self.definition.state_declarations
 
     @property
-    def parameter_sets(self) -> Mapping[str, ParameterSet]:
+    def parameter_sets(self) -> "ParameterSets":
         """The named parameter sets: their values and the source of these; the first is what element tests take."""
-        return self.definition.parameter_sets
+        return ParameterSets(self.definition)
 
     def element_test(
         self,
@@ -91,12 +91,45 @@ class ConstitutiveLaw:
     def _parameter_table(self) -> tuple[list[str], list[list[str]]]:
         sets = self.parameter_sets
         rows = [
-            [name, declared.unit, declared.bounds]
-            + [f"{getattr(found.parameters, name):g}" for found in sets.values()]
-            + [declared.doc]
+            [name, declared.unit, declared.bounds, *sets.values_of(name), declared.doc]
             for name, declared in self.parameters.items()
         ]
         return ["parameter", "unit", "bounds", *sets, "meaning"], rows
+
+
+class ParameterSets(Mapping[str, ParameterSet]):
+    """The named parameter sets of a law; shown as a table of their values, with the source of each."""
+
+    def __init__(self, definition: Law) -> None:
+        self._definition = definition
+
+    def __getitem__(self, name: str) -> ParameterSet:
+        return self._definition.parameter_sets[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._definition.parameter_sets)
+
+    def __len__(self) -> int:
+        return len(self._definition.parameter_sets)
+
+    def values_of(self, parameter: str) -> list[str]:
+        """The value of a parameter in each set, as text."""
+        return [f"{getattr(found.parameters, parameter):g}" for found in self.values()]
+
+    def __repr__(self) -> str:
+        return "\n".join([text_table(*self._table()), *self._sources()])
+
+    def _repr_html_(self) -> str:
+        return html_table(*self._table()) + "".join(f"<p>{source}</p>" for source in self._sources())
+
+    def _table(self) -> tuple[list[str], list[list[str]]]:
+        declared = self._definition.parameter_declarations
+        return ["parameter", "unit", *self], [
+            [name, found.unit, *self.values_of(name)] for name, found in declared.items()
+        ]
+
+    def _sources(self) -> list[str]:
+        return [f"{name}: {found.source}" for name, found in self.items()]
 
 
 class Laws(Mapping[str, ConstitutiveLaw]):

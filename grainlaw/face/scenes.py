@@ -49,7 +49,7 @@ def _content(source: SceneSource, changes: Mapping[str, Any]) -> tuple[dict[str,
     if isinstance(source, Mapping):
         return with_values(source, changes), "scene"
     path = scene_file(source)
-    return read_content(path, changes), str(path)
+    return read_content(path, changes), str(source)
 
 
 class ShippedScenes(Mapping[str, Scene]):
@@ -59,7 +59,9 @@ class ShippedScenes(Mapping[str, Scene]):
         files = shipped_scenes()
         if name not in files:
             raise KeyError(f"no scene '{name}'; {nearest_name(name, files)}")
-        return Scene(files[name])
+        scene = Scene(files[name])
+        scene._source = name
+        return scene
 
     def __iter__(self) -> Iterator[str]:
         return iter(shipped_scenes())

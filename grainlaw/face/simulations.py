@@ -22,6 +22,11 @@ class Simulation(simulation.Simulation):
     def __init__(self, scene: SceneSource, threads: int = 1) -> None:
         super().__init__(as_scene(scene), threads)
 
+    def __repr__(self) -> str:
+        points = sum(body.count for body in self.bodies)
+        laws = ", ".join(dict.fromkeys(body.law.name for body in self.bodies))
+        return f"Simulation({self.scene.source!r}): t = {self.time:g} s, step {self.steps}, {points} points of {laws}"
+
     def frame(self) -> Frame:
         """The present points with the scene's fields, in the order in which they were generated."""
         return make_frame(self.time, self.steps, self.bodies, self.fields)

@@ -19,6 +19,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError,
 from grainlaw.materials.element.path import steps_of
 from grainlaw.materials.element.settings import ElementTest, GrainDensity, InitialDensity, InitialPressure
 from grainlaw.materials.errors import InputError, nearest_name
+from grainlaw.materials.faults import fault_in_words
 from grainlaw.materials.tensor import SymmetricTensor
 
 Component = Literal["xx", "yy", "zz", "xy", "yz", "xz"]
@@ -93,7 +94,7 @@ def _first_fault(error: ValidationError) -> str:
     if fault["type"] == "extra_forbidden":
         model = MixedControl if len(fault["loc"]) == 1 else Stage
         return f"unknown key '{key}'; {nearest_name(str(fault['loc'][-1]), model.model_fields)}"
-    return f"{key}: {fault['msg']}" if key else fault["msg"]
+    return fault_in_words(fault, key)
 
 
 def mixed_test(control: MixedControl) -> ElementTest:

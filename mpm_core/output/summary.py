@@ -5,6 +5,7 @@ from pathlib import Path
 from pydantic import BaseModel, ConfigDict, FiniteFloat, NonNegativeInt, ValidationError
 
 from grainlaw.materials import InputError, atomic
+from grainlaw.materials.faults import fault_in_words
 
 SUMMARY_NAME = "summary.json"
 
@@ -63,5 +64,5 @@ def read_summary(folder: Path) -> RunSummary:
         return RunSummary.model_validate_json(path.read_bytes())
     except ValidationError as error:
         first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"]) or "the file"
-        raise InputError(f"{path} cannot be read: {where}: {first['msg']}") from error
+        key = ".".join(str(part) for part in first["loc"])
+        raise InputError(f"{path} cannot be read: {fault_in_words(first, key)}") from error

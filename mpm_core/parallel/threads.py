@@ -4,6 +4,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
+from numbers import Integral
 
 import numba
 
@@ -29,13 +30,18 @@ def usable_threads(requested: int | None) -> int:
     available = cores()
     if requested is None:
         return max(1, available - _busy_cores())
-    if not 1 <= requested <= available:
-        raise InputError(f"--threads {requested}: this machine has {available}")
+    _refuse_other_than(available, requested)
     return requested
 
 
+def _refuse_other_than(available: int, threads: int) -> None:
+    if not isinstance(threads, Integral) or isinstance(threads, bool) or not 1 <= threads <= available:
+        raise InputError(f"threads = {threads}: this machine has {available}; allowed: 1 to {available}")
+
+
 def use_threads(count: int) -> None:
-    """Let parallel kernels run on `count` threads."""
+    """Let parallel kernels run on `count` threads. Raises InputError beyond what the machine has."""
+    _refuse_other_than(int(numba.config.NUMBA_NUM_THREADS), count)  # type: ignore[attr-defined]
     _start_threads()
     numba.set_num_threads(count)
 

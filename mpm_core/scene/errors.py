@@ -1,24 +1,30 @@
 """Validation errors of a scene in one line: key, value, what is allowed, the nearest valid name."""
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from grainlaw.materials.errors import nearest_name
+from grainlaw.materials.faults import fault_in_words, not_among
+
+# Beyond these, the rest is counted.
+MOST_DESCRIBED = 5
+_RANKS = {"extra_forbidden": 0, "missing": 2}
 
 
 def described(error: ValidationError, model: type[BaseModel], content: Mapping[str, Any]) -> str:
-    """The first problem of a validation error, and how many more there are."""
-    problems = error.errors()
-    first = problems[0]
+    """The problems of a validation error in one line; unknown keys first, which may be why others are missing."""
+    problems = sorted(error.errors(), key=lambda found: _RANKS.get(found["type"], 1))
+    shown = [_sentence(problem, _key(problem, content), model) for problem in problems[:MOST_DESCRIBED]]
+    more = len(problems) - len(shown)
+    return "; also ".join(shown) + (f" (and {more} more)" if more else "")
+
+
+def _key(problem: Any, content: Mapping[str, Any]) -> str:
     # The discriminator of a union appears in the location but is no key of the file.
-    location = [part for part in first["loc"] if not (isinstance(part, str) and part in _union_tags(first, content))]
-    key = ".".join(str(part) for part in location)
-    text = _sentence(first, key, model)
-    more = len(problems) - 1
-    return text + (f" (and {more} more)" if more else "")
+    tags = _union_tags(problem, content)
+    return ".".join(str(part) for part in problem["loc"] if not (isinstance(part, str) and part in tags))
 
 
 def _sentence(problem: Any, key: str, model: type[BaseModel]) -> str:
@@ -26,24 +32,13 @@ def _sentence(problem: Any, key: str, model: type[BaseModel]) -> str:
     if kind == "extra_forbidden":
         *parents, name = key.split(".")
         return f"unknown key '{key}'; {nearest_name(name, _keys(model, parents))}"
-    if kind == "missing":
-        return f"'{key}' is missing"
+    if kind == "union_tag_not_found":
+        tag = problem["ctx"]["discriminator"].strip("'")
+        return f"'{key}.{tag}' is missing"
     if kind == "union_tag_invalid":
         tag = problem["ctx"]["discriminator"].strip("'")
-        return _not_among(f"{key}.{tag}", problem["ctx"]["tag"], problem["ctx"]["expected_tags"])
-    if kind == "literal_error" and isinstance(problem["input"], str):
-        return _not_among(key, problem["input"], problem["ctx"]["expected"])
-    message = problem["msg"].removeprefix("Value error, ")
-    if kind == "value_error":
-        return f"{key}: {message}" if key else message
-    return f"{key} = {problem['input']!r}: {message}"
-
-
-def _not_among(key: str, value: str, allowed: str) -> str:
-    """What is wrong with a text that is none of some quoted ones."""
-    close = nearest_name(value, re.findall("'([^']*)'", allowed))
-    hint = f"; {close}" if close.startswith("did") else ""
-    return f"{key} = {value!r}: allowed: {allowed}{hint}"
+        return not_among(f"{key}.{tag}", problem["ctx"]["tag"], problem["ctx"]["expected_tags"])
+    return fault_in_words(problem, key)
 
 
 def _union_tags(problem: Any, content: Mapping[str, Any]) -> set[str]:

@@ -14,7 +14,10 @@ from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, REMAINDERS, SXX, SYY,
 from grainlaw.mpm_core.scene.geostatic import vertical_stresses
 from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
 from grainlaw.mpm_core.scene.shapes import lattice
+from grainlaw.mpm_core.stepping.peak_memory import physical_memory
 
+# At least, while a shape is filled: two copies of the coordinates.
+BYTES_PER_POINT = 32
 # Of stresses that may be stored in single precision.
 STRESS_ROUND_OFF = 1e-6
 
@@ -39,6 +42,7 @@ def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
 
 
 def _positions(scene: Scene, number: int, section: BodySection) -> NDArray[np.float64]:
+    _refuse_absurd_size(scene, number, section)
     positions = lattice(section.shape, scene.grid.lower, scene.grid.cell_size, section.points_per_cell)
     if len(positions) == 0:
         raise InputError(f"body.{number}: the shape holds no point; it is smaller than a cell of the grid")
@@ -50,6 +54,23 @@ def _positions(scene: Scene, number: int, section: BodySection) -> NDArray[np.fl
             f"{list(scene.grid.lower)} to {list(scene.grid.upper)}, the first at ({x:g}, {y:g})"
         )
     return positions
+
+
+def _refuse_absurd_size(scene: Scene, number: int, section: BodySection) -> None:
+    """Shapes in millimetres, for instance, or with a typing error in an exponent."""
+    lower, upper = (np.array(corner) for corner in section.shape.bounds())
+    if (upper < scene.grid.lower).any() or (lower > scene.grid.upper).any():
+        domain = f"{list(scene.grid.lower)} to {list(scene.grid.upper)}"
+        raise InputError(f"body.{number}: the shape lies outside the domain {domain}")
+    spacing = scene.grid.cell_size / section.points_per_cell**0.5
+    with np.errstate(over="ignore"):
+        across, up = (upper - lower) / spacing
+        memory = BYTES_PER_POINT * across * up
+    if not memory < physical_memory():
+        raise InputError(
+            f"body.{number}: the shape is {across:.3g} x {up:.3g} points of {spacing:g} m large, more than fit into "
+            "memory; lengths are in metres"
+        )
 
 
 def _refuse_overlap(scene: Scene, positions: list[NDArray[np.float64]]) -> None:

@@ -1,5 +1,6 @@
 """The scene: everything that a run needs, as a validated model that reads and writes TOML."""
 
+import math
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -42,6 +43,8 @@ class GridSection(Section):
     def _whole_cells(self) -> "GridSection":
         for axis, name in enumerate("xy"):
             length = self.upper[axis] - self.lower[axis]
+            if not math.isfinite(length / self.cell_size):
+                raise ValueError(f"the domain is {length:g} m along {name}, too many cells of {self.cell_size:g} m")
             whole = round(length / self.cell_size) * self.cell_size
             if whole <= 0 or abs(whole - length) > 1e-6 * self.cell_size:
                 raise ValueError(
@@ -326,9 +329,12 @@ class Scene(Section):
         return scene
 
     @classmethod
-    def load(cls, path: Path, overrides: dict[str, Any] | None = None) -> "Scene":
-        """Read a TOML scene, with values by dotted key set on top. Raises InputError in one line."""
-        return cls.from_dict(read_content(path, overrides or {}), str(path))
+    def load(cls, path: Path, overrides: dict[str, Any] | None = None, source: str = "") -> "Scene":
+        """Read a TOML scene, with values by dotted key set on top. Raises InputError in one line.
+
+        Messages call it `source`, by default its path.
+        """
+        return cls.from_dict(read_content(path, overrides or {}), source or str(path))
 
     def to_toml(self) -> str:
         """The scene with every default written out."""

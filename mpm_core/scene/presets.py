@@ -26,9 +26,9 @@ ACCURACIES = ("10%", "3%", "1%")
 def with_settings_for_accuracy(content: Any) -> Any:
     """The tables of a scene, with what it leaves open of the settings filled in where `accuracy` asks for it.
 
-    Raises ValueError for an accuracy that was not reached with a law of the scene or with bodies as slender as these,
-    where its cells would be finer than the grains, and where no cell size divides the domain. What is not well-formed
-    is left to the validation of the scene.
+    Raises ValueError for a law or its parameters that are wrong, for an accuracy that was not reached with a law of the
+    scene or with bodies as slender as these, where its cells would be finer than the grains, and where no cell size
+    divides the domain. What is not well-formed is left to the validation of the scene.
     """
     if not isinstance(content, Mapping) or content.get("accuracy") not in ACCURACIES:
         return content
@@ -36,10 +36,7 @@ def with_settings_for_accuracy(content: Any) -> Any:
     boxes, materials = _boxes(content.get("body")), _materials(content)
     if not isinstance(grid, Mapping) or not isinstance(time, Mapping) or not boxes or not materials:
         return content
-    try:
-        stated = {name: _resolutions(name, table) for name, table in materials.items()}
-    except InputError:
-        return content
+    stated = {name: _resolutions(name, table) for name, table in materials.items()}
     resolution = _strictest(content["accuracy"], stated)
     _refuse_slender_bodies(content["accuracy"], boxes, resolution)
     cell_size = grid.get("cell_size")
@@ -64,9 +61,16 @@ def _materials(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
 
 
 def _resolutions(name: str, table: Mapping[str, Any]) -> Mapping[str, Resolution]:
-    """What the law of a material states for its parameters. Raises InputError where the scene will refuse them."""
-    law = get_material(str(table.get("law", name)))
-    return law.resolutions(law.checked({key: value for key, value in table.items() if key != "law"}, name))
+    """What the law of a material states for its parameters. Raises ValueError for what is wrong with either."""
+    where = f"material.{name}"
+    try:
+        law = get_material(str(table.get("law", name)))
+    except InputError as error:
+        raise ValueError(f"{where}: {error}") from None
+    try:
+        return law.resolutions(law.checked({key: value for key, value in table.items() if key != "law"}, where))
+    except InputError as error:
+        raise ValueError(str(error)) from None
 
 
 def _strictest(accuracy: str, stated: Mapping[str, Mapping[str, Resolution]]) -> Resolution:

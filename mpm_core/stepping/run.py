@@ -67,8 +67,8 @@ def built_simulation(scene: Scene, threads: int) -> Simulation:
     except InputError as error:
         raise InputError(f"{scene.source}: {error}") from error
     except MemoryError as error:
-        across, up = scene.grid.cells
-        raise InputError(f"{scene.source}: grid: {across} x {up} cells do not fit into memory") from error
+        across, up = map(float, scene.grid.cells)
+        raise InputError(f"{scene.source}: grid: {across:.12g} x {up:.12g} cells do not fit into memory") from error
 
 
 def _advance(simulation: Simulation, recorder: Recorder, started: float, progress: Progress | None) -> float:

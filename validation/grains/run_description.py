@@ -5,6 +5,7 @@ from pathlib import Path
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from grainlaw.materials import InputError
+from grainlaw.materials.faults import fault_in_words
 from grainlaw.validation.grains.readers.text_file import BYTE_ORDER_MARK
 
 RUN_DESCRIPTION_NAME = "run.json"
@@ -68,5 +69,5 @@ def read_run_description(folder: Path) -> RunDescription:
         return RunDescription.model_validate_json(path.read_bytes().removeprefix(BYTE_ORDER_MARK))
     except ValidationError as error:
         first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"]) or "the file"
-        raise InputError(f"{path}: {where}: {first['msg']}") from None
+        key = ".".join(str(part) for part in first["loc"])
+        raise InputError(f"{path}: {fault_in_words(first, key)}") from None
