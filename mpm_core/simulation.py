@@ -227,7 +227,9 @@ class Simulation:
 
     def _sleep(self) -> Sleep | None:
         settings = self.scene.sleep
-        return Sleep(settings, self.bodies, self.grid, self.basis) if settings.speed is not None else None
+        if settings.speed is None:
+            return None
+        return Sleep(settings, self.bodies, self.grid, self.basis, self.periodic_axes)
 
     def _let_sleep(self, sleep: Sleep) -> None:
         """Wake what something moves, and let fall asleep what rests."""

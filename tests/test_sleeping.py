@@ -119,6 +119,41 @@ def test_a_layer_that_nothing_wakes_does_not_give_way(monkeypatch):
     assert np.abs(shape(case) / shape(led_to(FALLING, 0.9)) - 1.0).max() > 0.02
 
 
+def across(shift):
+    """How a block that another runs into across a gap came to lie, in a frame that is shifted around periodic sides."""
+
+    def block(lower, velocity):
+        corner = (lower + shift) % 1.0
+        shape = {"kind": "rectangle", "lower": [corner, 0.2], "upper": [corner + 0.3, 0.6]}
+        return {"material": "linear_elastic", "density": 1000.0, "velocity": [velocity, 0.0], "shape": shape}
+
+    case = simulation(
+        BLOCK,
+        {
+            "boundary": {"left": "periodic", "right": "periodic"},
+            "grid.cell_size": 0.025,
+            "body": [block(0.0, 0.0), block(0.5, 0.5)],
+            "sleep": {"speed": 1e-3, "window": 0.01},
+        },
+    )
+    rests = case.bodies[0]
+    asleep = []
+    for time in (0.3, 0.36, 0.5):
+        advance(case, time)
+        asleep.append(rests.count - rests.awake)
+    x, y = rests.positions[:, np.argsort(rests.ids)]
+    return asleep, np.stack([(x - shift + 0.25) % 1.0, y])
+
+
+def test_sleep_does_not_see_where_periodic_sides_are():
+    """The one runs into the other across the seam, or in the middle of the domain."""
+    asleep, positions = across(0.5)
+    assert asleep[0] == 768 > asleep[1] > 0 == asleep[2]
+    asleep_at_seam, positions_at_seam = across(0.0)
+    assert asleep_at_seam == asleep
+    np.testing.assert_allclose(positions_at_seam, positions, atol=1e-12)
+
+
 def test_nothing_sleeps_that_moves_steadily():
     moving = {"body.0.velocity": [0.5, 0.0], "sleep": {"speed": SPEED, "window": 0.01}}
     case = led_to(BLOCK, 0.1, moving)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, MU_I_LC, set_affine_velocity, simulation
 
+from grainlaw.mpm_core.failures import LARGEST_INCREMENT
 from grainlaw.mpm_core.grid.grid import COMPONENTS, GHOSTS, NODE_OVERFILL, Grid
 from grainlaw.mpm_core.kernels.shape_functions import BASES, make_stencil
 from grainlaw.mpm_core.kernels.volume_coupling import (
@@ -86,6 +87,21 @@ def test_the_pressures_of_a_sheared_block_even_out_and_its_volume_stays():
         body.update_stress(1e-3, 1e-3, 0.1)
     assert pressures(body).std() < 0.3 * scatter
     assert (body.volume).sum() == pytest.approx(volume, rel=1e-4)
+
+
+def test_what_couples_volumes_bounds_no_step():
+    """The strain that closes an open point is no motion: the next step has none of it, and no law is to blame."""
+    case = simulation(BLOCK, {**LOOSE, "body.0.shape": FILLING, "transfer.time_constant": 1e-4})
+    (body,) = case.bodies
+    shear = 0.1
+    set_affine_velocity(body, (0.0, 0.0), [[0.0, shear], [0.0, 0.0]])
+    open_point = int(np.argmin(np.hypot(*(body.positions - 0.4))))
+    body.density[open_point], body.stress[:, open_point] = 300.0, 0.0
+    open_point, dt = body.ids[open_point], 1e-3
+    case.step(dt)
+    assert body.density[body.ids == open_point] > 300.0 * np.exp(LARGEST_INCREMENT)
+    assert case.strain_rate < 1.0
+    assert case.adaptive_step() == pytest.approx(case.scene.time.safety * case.critical_time_step())
 
 
 def test_material_that_carries_tension_is_left_alone():

@@ -7,6 +7,7 @@ import pytest
 from scenes_for_tests import BLOCK, COLUMN, momentum, simulation
 
 from grainlaw.materials import InputError
+from grainlaw.mpm_core.grid.grid import MASS
 from grainlaw.mpm_core.scene.model import FEWEST_PERIODIC_CELLS
 
 G = 9.81
@@ -89,6 +90,25 @@ def test_a_layer_that_falls_across_periodic_sides_stays_flat():
     rows = np.sort(case.bodies[0].positions[1]).reshape(4, 20)
     np.testing.assert_allclose(rows, np.broadcast_to(rows.mean(axis=1, keepdims=True), rows.shape), rtol=1e-10)
     assert rows[0, 0] < 0.03
+
+
+@pytest.mark.parametrize("cells", [4, 5])
+def test_all_copies_of_a_node_across_periodic_sides_are_the_same(cells):
+    """A grid that is periodic over four cells has three copies of a node."""
+    layer = {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [0.1 * cells, 0.3]}
+    sides = {"left": "periodic", "right": "periodic", "bottom": {"kind": "friction", "coefficient": 0.5}}
+    case = simulation(BLOCK, {"grid.upper": [0.1 * cells, 0.8], "boundary": sides, "body.0.shape": layer})
+    (body,) = case.bodies
+    case._sort()
+    # As far as points may drift before they are sorted again.
+    body.positions[0] += np.where(body.positions[0] < 0.2, -0.08, 0.08)
+    case._p2g()
+    (clearances,) = case.wall_clearance.clearances()
+    nodes = case.grid.nodes.reshape(*case.grid.shape, -1)
+    for copy in range(cells, case.grid.shape[0]):
+        np.testing.assert_array_equal(nodes[copy], nodes[copy - cells])
+        assert clearances[copy] == clearances[copy - cells]
+    assert nodes[:cells, :, MASS].sum() == pytest.approx(body.count * body.point_mass, rel=1e-12)
 
 
 @pytest.mark.parametrize("threads", [1, 2])

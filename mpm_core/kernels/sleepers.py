@@ -27,12 +27,12 @@ def copy_nodes(source, target, nodes_y, active):  # type: ignore[no-untyped-def]
 
 @njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def hold_sleepers(nodes, asleep, withheld, active):  # type: ignore[no-untyped-def]
+def hold_sleepers(nodes, held, withheld, active):  # type: ignore[no-untyped-def]
     """Hold the nodes with sleeping mass, and sum up the momentum that is withheld from them."""
     for i in prange(active.first_column, active.last_column + 1):
         for j in range(active.first_rows[i], active.last_rows[i] + 1):
             node = (i * withheld.shape[1] + j) * COMPONENTS
-            if asleep[node + MASS] > 0.0:
+            if held[i, j]:
                 withheld[i, j, 0] += nodes[node + MASS] * nodes[node + NEW_VX]
                 withheld[i, j, 1] += nodes[node + MASS] * nodes[node + NEW_VY]
                 nodes[node + NEW_VX] = nodes[node + NEW_VY] = 0.0
@@ -41,12 +41,15 @@ def hold_sleepers(nodes, asleep, withheld, active):  # type: ignore[no-untyped-d
 @njit(cache=True)
 @named(CORE_MARK)
 def stir_nodes(withheld, waking_squared, active, stirred):  # type: ignore[no-untyped-def]
-    """Mark what is around the nodes from which too much is withheld; returns whether there are any."""
+    """Mark what is around the nodes from which too much is withheld; returns whether there are any.
+
+    Of marks, here and below, there are `RING` rows beyond each side of the grid.
+    """
     found = False
     for i in range(active.first_column, active.last_column + 1):
         for j in range(active.first_rows[i], active.last_rows[i] + 1):
             if withheld[i, j, 0] ** 2 + withheld[i, j, 1] ** 2 > waking_squared:
-                stirred[max(0, i - RING) : i + RING + 1, max(0, j - RING) : j + RING + 1] = True
+                stirred[i : i + 2 * RING + 1, j : j + 2 * RING + 1] = True
                 found = True
     return found
 
@@ -57,7 +60,7 @@ def stir_around_points(x, y, origin, cell_size, offset, width, stirred):  # type
     """Mark what is around points."""
     for p in range(len(x)):
         i, j = first_node(x[p], y[p], origin, cell_size, offset)
-        stirred[max(0, i - RING) : i + width + RING, max(0, j - RING) : j + width + RING] = True
+        stirred[i : i + width + 2 * RING, j : j + width + 2 * RING] = True
 
 
 @njit(cache=True)
@@ -67,5 +70,6 @@ def touches_stirred(x, y, origin, cell_size, offset, width, stirred):  # type: i
     touched = np.empty(len(x), np.bool_)
     for p in range(len(x)):
         i, j = first_node(x[p], y[p], origin, cell_size, offset)
+        i, j = i + RING, j + RING
         touched[p] = stirred[i : i + width, j : j + width].any()
     return touched

@@ -31,7 +31,7 @@ class StepReport(NamedTuple):
     internal_work           of the stress on the strain [J/m]
     fastest                 speed at which a point moved [m/s]
     signal_speed            largest sum of sound speed and speed [m/s]
-    increment               largest volumetric strain of the step [1]; NaN if anything is not finite
+    increment               largest volumetric strain of the motion [1]; NaN if anything is not finite
     """
 
     lowest_x: float

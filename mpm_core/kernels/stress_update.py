@@ -99,9 +99,10 @@ def couple_volumes(rows, first, last, duration, exchange, stiffness, coupling): 
 
 @adaptable
 def bring_forward(rows, first, last, dt, coupling, buffers, remainder):  # type: ignore[no-untyped-def]
-    """Rotate the stress and bring the density to the end of the step; returns the largest volumetric increment.
+    """Rotate the stress and bring the density to the end of the step; returns the largest increment of the motion.
 
-    `coupling` are compressive strains besides those of the motion. The buffers receive the power of the old stress over
+    `coupling` are compressive strains besides those of the motion. The step after this one has none, so that they bound
+    no step; they are only to be finite. The buffers receive the power of the old stress over
     mass, and the new volume over mass. In single precision `remainder` is what singles leave out of the densities: slow
     strains change a density by less than its rounding in a step, and would be lost.
     """
@@ -130,7 +131,7 @@ def bring_forward(rows, first, last, dt, coupling, buffers, remainder):  # type:
             new = density[p] + change
             remainder[p] = change - (new - density[p])
             density[p] = new
-        largest = max(largest, ordered_bits(abs(2.0 * half_increment)))
+        largest = max(largest, ordered_bits(abs(dt * trace(motion)) + 0.0 * coupling[p - first]))
     return largest
 
 
@@ -191,7 +192,7 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str
 
     It couples the volumes of the points for a time `coupled_time` [s], zero for not in this step; `exchange` is that
     time over the FLIP blend time. Reports per block of points: the largest signal speed c + |v| [m/s], the work of the
-    stress on the strain [J/m], and the largest volumetric strain increment of the step. Where anything is not finite,
+    stress on the strain [J/m], and the largest volumetric strain increment of the motion. Where anything is not finite,
     the last one is NaN.
     """
     mark, number = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}_{precision}", PRECISIONS[precision]

@@ -92,8 +92,9 @@ class WallClearance:
     def _join(self, clearances: NDArray[np.float64], along: int) -> None:
         """Give nodes that are one and the same across a periodic axis the least of their clearances."""
         nodes, cells = self.grid.shape[along], self.grid.cells[along]
-        first, last = clearances[: nodes - cells], clearances[cells:nodes]
-        first[:] = last[:] = np.minimum(first, last)
+        for low in range(min(cells, nodes - cells)):
+            copies = clearances[low:nodes:cells]
+            copies[:] = copies.min()
 
 
 @cache

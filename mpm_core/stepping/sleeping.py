@@ -25,11 +25,13 @@ from numpy.typing import NDArray
 
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.grid.active_nodes import ActiveNodes, find_active_nodes, no_active_nodes
-from grainlaw.mpm_core.grid.grid import Grid
+from grainlaw.mpm_core.grid.grid import COMPONENTS, MASS, Grid
+from grainlaw.mpm_core.grid.periodic import join_marks
 from grainlaw.mpm_core.kernels.grid_update import clear_nodes
 from grainlaw.mpm_core.kernels.shape_functions import Basis
 from grainlaw.mpm_core.kernels.simd.registers import MOST_AT_ONCE
 from grainlaw.mpm_core.kernels.sleepers import (
+    RING,
     copy_nodes,
     hold_sleepers,
     stir_around_points,
@@ -51,20 +53,25 @@ class Sleep:
     positions    positions of each body's points at that time, in the order of generation, shape (2, n) [m]
     withheld  momentum withheld from each node since then, shape (nodes along x, along y, 2) [kg/s]
     nodes     what the sleeping points bring, as in `Grid.nodes`
+    held      whether sleeping points bring mass to a node, or to another copy of it across a periodic axis
     full      mass of a full cell of the densest body at the start [kg/m]
     """
 
-    def __init__(self, settings: SleepSection, bodies: Sequence[Body], grid: Grid, basis: Basis) -> None:
+    def __init__(
+        self, settings: SleepSection, bodies: Sequence[Body], grid: Grid, basis: Basis, periodic_axes: Sequence[int]
+    ) -> None:
         self.speed = settings.speed or 0.0
         self.window = settings.window
         self.bodies = bodies
         self.grid = grid
         self.basis = basis
+        self.periodic_axes = periodic_axes
         # Before the first window: one that ends when that is to begin, in which every point came from far away.
         self.started = settings.start - settings.window
         self.positions = [np.full((2, body.count), np.inf) for body in bodies]
         self.withheld = np.zeros((*grid.shape, 2))
         self.nodes = grid.empty_nodes()
+        self.held = np.zeros(grid.shape, np.bool_)
         self.active = no_active_nodes(grid)
         self.full = max(body.initial_density for body in bodies) * grid.cell_size**2
 
@@ -88,15 +95,16 @@ class Sleep:
     def hold(self, active: ActiveNodes) -> None:
         """Hold the nodes with sleeping mass, if there are any."""
         if self.has_sleepers:
-            hold_sleepers(self.grid.nodes, self.nodes, self.withheld, active)
+            hold_sleepers(self.grid.nodes, self.held, self.withheld, active)
 
     def wake_up(self, active: ActiveNodes) -> bool:
         """Wake what is near an active node from which too much is withheld; returns whether anything woke."""
-        stirred = np.zeros(self.grid.shape, np.bool_)
+        stirred = self._no_marks()
         waking = self.full * WAKING * self.speed
         if not stir_nodes(self.withheld, waking * waking, active, stirred):
             return False
-        self.withheld[stirred] = 0.0
+        self._join(stirred)
+        self.withheld[stirred[RING:-RING, RING:-RING]] = 0.0
         woke = False
         for body in self.bodies:
             wakes = self._touched(body.points_asleep, stirred)
@@ -109,11 +117,12 @@ class Sleep:
         """At the end of a window, send to sleep what rested; returns whether anything fell asleep."""
         if time - self.started < self.window:
             return False
-        stirred = np.zeros(self.grid.shape, np.bool_)
+        stirred = self._no_marks()
         for body, positions in zip(self.bodies, self.positions, strict=True):
             was = positions[:, body.ids - body.first_id]
             displaced = np.hypot(*(body.positions - was)) > self.speed * (time - self.started)
             stir_around_points(*body.positions[:, displaced], *self._stencil(), stirred)
+        self._join(stirred)
         fell = False
         for body in self.bodies:
             slept = np.ones(body.count - body.awake, np.bool_)
@@ -130,6 +139,16 @@ class Sleep:
         self.active = find_active_nodes([body.points_asleep for body in self.bodies], self.grid, self.basis, ())
         for body in self.bodies:
             body.p2g_of_sleepers(self.nodes, self.grid)
+        self.held = self.nodes[MASS::COMPONENTS].reshape(self.grid.shape) > 0.0
+        self._join(self.held)
+
+    def _no_marks(self) -> NDArray[np.bool_]:
+        """No node marked, nor any in `RING` rows beyond each side, which may be the inside across a periodic axis."""
+        return np.zeros([nodes + 2 * RING for nodes in self.grid.shape], np.bool_)
+
+    def _join(self, marks: NDArray[np.bool_]) -> None:
+        for axis in self.periodic_axes:
+            join_marks(marks, axis, self.grid.cells[axis])
 
     def _touched(self, points: NDArray[np.float64], stirred: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Whether any node of each point is marked."""
