@@ -21,7 +21,7 @@ Over a step I is the unknown. Given I, psi is known and (1) with (4) is a quadra
 stress over (5) is positive at I = 0 and negative once the trial shear has all become plastic: the root is bracketed,
 and found by the secant method with bisection. Looser than phi_min, compaction can take the pressure faster than any
 I p^(1/2) uses up the trial shear; then there is no root, and the grains part: p = 0, phi_j = phi. Open points neither
-flow nor dilate: phi_j stays, and they close where they opened.
+flow nor dilate: phi_j stays, and they close where they opened. A root that is not found makes the stress NaN.
 
 Source: dilatancy (3) after Roux & Radjai (1998) and Pailha & Pouliquen (2009), J. Fluid Mech. 633, a = 4.09 there;
 phi(I) as in Forterre & Pouliquen (2008); well-posedness: Heyman, Delannay, Tabuteau & Valance (2017), J. Fluid Mech.
@@ -57,7 +57,9 @@ from grainlaw.plugins.mu_i.friction import friction_of_inertial_number, own_iner
 
 # Of the trial stress.
 TOLERANCE = 1e-12
-MAXIMUM_ITERATIONS = 100
+# The same, where round-off keeps I from more.
+LARGEST_ERROR = 1e-6
+MAXIMUM_ITERATIONS = 200
 # Beyond it no pressure is left: at 1000 1/s and 15 mm less than 1e-6 Pa.
 LARGEST_NUMBER = 1e6
 
@@ -150,7 +152,7 @@ def update(
 def flow_of_step(increment: Increment, guess: float, parameters: Parameters) -> Flow:
     """The step whose shear stress is the strength at its own inertial number, from the I of the step before.
 
-    Without pressure where there is no such number.
+    Without pressure where there is no such number, NaN where it is not found.
     """
     still = flow_at(0.0, increment, parameters)
     if still.shear_stress <= still.strength:
@@ -177,9 +179,17 @@ def flow_of_step(increment: Increment, guess: float, parameters: Parameters) -> 
         elif stalled or not lower < trial < upper:
             trial = 0.5 * (lower + upper)
         if trial in (lower, upper):
-            return flow
+            break
         last, flow = flow, flow_at(trial, increment, parameters)
-    return flow
+    return found_or_nan(flow, increment)
+
+
+@pointwise
+def found_or_nan(flow: Flow, increment: Increment) -> Flow:
+    """The last step of a search that did not reach its tolerance, if there is next to nothing left."""
+    if abs(flow.shear_stress - flow.strength) <= LARGEST_ERROR * increment.trial_shear_stress:
+        return flow
+    return Flow(math.nan, math.nan, math.nan, math.nan)
 
 
 @pointwise

@@ -41,6 +41,15 @@ def test_mixed_control_from_a_file(tmp_path):
     assert "after 10 steps" in done.stdout
 
 
+def test_viscosity_of_what_does_not_flow_is_said_to_be_none(tmp_path):
+    control = tmp_path / "rest.toml"
+    control.write_text("time_step = 0.5\n[[stage]]\nduration = 1.0\n")
+    done = grainlaw("element", "mixed", "--material", "linear_elastic", "--control", str(control))
+    assert done.returncode == 0, done.stderr
+    assert "viscosity = not defined, nothing flows" in done.stdout
+    assert "nan" not in done.stdout
+
+
 def test_help_names_every_test():
     assert TESTS.split(", ") == list(TEST_NAMES)
 

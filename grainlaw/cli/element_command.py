@@ -1,5 +1,6 @@
 """`grainlaw element`: a homogeneous element test on one or several materials."""
 
+import math
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -88,7 +89,9 @@ def _print_result(test: "ElementTest", result: "ElementResult", wall_time: float
     typer.echo(f"after {result.steps} steps ({wall_time:.2f} s, compilation included):")
     for column in result.columns:
         if not column.name.startswith(("stress_", "strain_")):
-            typer.echo(f"  {column.name} = {_with_unit(column.values[-1], column.unit)}")
+            value = column.values[-1]
+            shown = "not defined, nothing flows" if math.isnan(value) else _with_unit(value, column.unit)
+            typer.echo(f"  {column.name} = {shown}")
     if result.pressure[-1] > 0.0:
         typer.echo(f"  q/p = {result.deviatoric_stress[-1] / result.pressure[-1]:.6g}")
 

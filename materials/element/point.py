@@ -6,6 +6,9 @@ from typing import Any, NamedTuple
 from grainlaw.materials.element.search import Search, search_from
 from grainlaw.materials.tensor import SymmetricTensor, contraction, isotropic, trace
 
+# Below it there is no material left, and the specific volume is no number any more [kg/m3].
+SMALLEST_DENSITY = 1e-300
+
 
 class Point(NamedTuple):
     """Stress [Pa], strain, strain rate [1/s], density [kg/m3] and the law's state at a time [s].
@@ -26,7 +29,8 @@ class Point(NamedTuple):
 def is_finite(point: Point) -> bool:
     """Whether stress and density are numbers, and there is any material left."""
     return (
-        math.isfinite(trace(point.stress) + contraction(point.stress, point.stress)) and 0.0 < point.density < math.inf
+        math.isfinite(trace(point.stress) + contraction(point.stress, point.stress))
+        and SMALLEST_DENSITY < point.density < math.inf
     )
 
 

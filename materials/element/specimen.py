@@ -1,5 +1,6 @@
 """The specimen of an element test: a law with its parameter values, where they came from, and its density at rest."""
 
+import math
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -23,12 +24,22 @@ class Specimen:
     source: str
 
     def density(self, pressure: float, stated: float) -> float:
-        """The stated initial bulk density [kg/m3] or, if that is 0, the one of the law's first set at the pressure."""
+        """The stated initial bulk density [kg/m3] or, if that is 0, the one of the law's first set at the pressure.
+
+        Raises InputError if there is none.
+        """
         if stated > 0.0:
             return stated
         if not self.law.parameter_sets:
             raise InputError(f"{self.law.name} has no named parameter set to take a density from; set density [kg/m3]")
-        return next(iter(self.law.parameter_sets.values())).density(pressure, self.parameters)
+        chosen = next(iter(self.law.parameter_sets.values()))
+        try:
+            density = chosen.density(pressure, self.parameters)
+        except (ArithmeticError, ValueError):
+            density = math.nan
+        if not 0.0 < density < math.inf:
+            raise InputError(f"{self.law.name} has no density at rest under {pressure:g} Pa; set density [kg/m3]")
+        return density
 
     def declared(self, name: str, otherwise: float) -> float:
         """A parameter if the law declares it, else the other value."""

@@ -6,7 +6,8 @@ assumed I makes a larger surface, so less plastic shear: what is found falls whi
 is found by the secant method from the I of the step before, with bisection wherever that leaves its bracket. The return
 of Cam Clay leaves a trace of F, which a fast step would magnify in I; its end lies exactly on the surface of a slightly
 different I, and that one counts as assumed. An elastic step gives the largest I at which there is flow. A step of some
-per cent can soften so much that its return jumps over that root; it is then taken in equal substeps.
+per cent can soften so much that its return jumps over that root; it is then taken in equal substeps. Where the root is
+not found in the finest of them either, the result is NaN.
 
 Source: this project's.
 """
@@ -41,6 +42,8 @@ ROUND_OFF = 1e-15
 LARGEST_MISMATCH = 1e-6
 # Strain below which a return does not jump.
 SMALLEST_PART = 1e-4
+# Of steps beyond any range, which would take for ever and lead nowhere.
+LARGEST_PARTS = 4**7
 
 
 class FlowingStep(NamedTuple):
@@ -102,7 +105,7 @@ def flowing_cam_clay_step(
     """One strain increment in contact (volumetric, compression-positive, and deviatoric) over `dt` [s].
 
     `expected_inertial_number` is the one to try first, that of the step before. The result is NaN if the return of Cam
-    Clay does not converge.
+    Clay does not converge, or if no inertial number is found.
     """
     increment = Increment(start_pressure, start_deviator, compression, shear, size_at_rest, dt)
     flow = substepped_where_it_jumps(increment, expected_inertial_number, constants)
@@ -111,28 +114,39 @@ def flowing_cam_clay_step(
 
 @pointwise
 def substepped_where_it_jumps(increment: Increment, guess: float, constants: FlowingCamClay) -> Flow:
-    """The whole step or, where its return jumps, the last of as many equal parts as it takes not to."""
+    """The whole step or, where its return jumps, the last of as many equal parts as it takes not to; NaN if none do."""
     size = abs(increment.compression) + half_norm(increment.shear)
+    largest_parts = min(size / SMALLEST_PART, LARGEST_PARTS)
     parts = 1
     while True:
         flow, is_consistent = substepped(increment, parts, guess, constants)
-        if is_consistent or size <= SMALLEST_PART * parts:
+        if is_consistent:
             return flow
+        if not parts < largest_parts:
+            return unfound(flow)
         parts *= 4
 
 
 @pointwise
+def unfound(flow: Flow) -> Flow:
+    """A step without an inertial number of its own."""
+    nothing = CamClayStep(math.nan, math.nan, flow.end.deviator, math.nan, math.nan)
+    return Flow(nothing, math.nan, math.nan, math.nan, math.nan, math.nan)
+
+
+@pointwise
 def substepped(increment: Increment, parts: int, guess: float, constants: FlowingCamClay) -> tuple[Flow, bool]:
-    """The last of equal parts of a step, and whether each had the inertial number of its own plastic strain."""
+    """The last of equal parts of a step, and True; or the first that has not the inertial number of its strain."""
     start = CamClayStep(increment.start_pressure, increment.size_at_rest, increment.start_deviator, 0.0, 0.0)
-    flow, is_consistent = Flow(start, increment.size_at_rest, 0.0, guess, 0.0, 0.0), True
+    flow = Flow(start, increment.size_at_rest, 0.0, guess, 0.0, 0.0)
     largest_mismatch = LARGEST_MISMATCH * sensitive_inertial_number(constants)
     compression, shear, dt = increment.compression / parts, increment.shear * (1.0 / parts), increment.dt / parts
     for _ in range(parts):
         part = Increment(flow.end.mean_pressure, flow.end.deviator, compression, shear, flow.size_at_rest, dt)
         flow = consistent_flow(part, flow.found, constants)
-        is_consistent = is_consistent and abs(flow.found - flow.assumed) <= largest_mismatch
-    return flow, is_consistent
+        if not abs(flow.found - flow.assumed) <= largest_mismatch:
+            return flow, False
+    return flow, True
 
 
 @pointwise
