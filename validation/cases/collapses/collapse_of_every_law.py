@@ -28,6 +28,7 @@ LAWS = {
     "mu_i_lc": "mu(I)-LC",
     "mu_i_elastoplastic": "mu(I)-LC",
     "mu_i_phi_i": "mu(I)-LC",
+    "mu_i_state": "mu(I)-LC",
     "modified_cam_clay": "MCC OCR 1",
     "mu_i_mcc": "MCC OCR 1",
 }

@@ -14,7 +14,7 @@ CELL = {Effort.QUICK: 0.025, Effort.FULL: 0.0125}
 # The heap starts with the weight of each column as its pressure, which is no equilibrium, and first adjusts to it [s].
 ADJUSTED = 0.5
 WATCH = {Effort.QUICK: 1.0, Effort.FULL: 10.0}
-LAWS = ("drucker_prager", "mu_i_lc", "mu_i_elastoplastic", "mu_i_phi_i", "modified_cam_clay", "mu_i_mcc")
+LAWS = ("drucker_prager", "mu_i_lc", "mu_i_elastoplastic", "mu_i_phi_i", "mu_i_state", "modified_cam_clay", "mu_i_mcc")
 # tan of the slope is 1/3; friction of the control.
 SLIPPERY = {"static_friction": 0.2, "dynamic_friction": 0.4}
 

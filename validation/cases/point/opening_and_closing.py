@@ -17,6 +17,7 @@ LAWS = {
     "mu_i_lc": "paper",
     "mu_i_elastoplastic": "paper",
     "mu_i_phi_i": "paper",
+    "mu_i_state": "paper",
     "drucker_prager": "aluminium_bars",
     "newtonian": "glycerol",
 }
