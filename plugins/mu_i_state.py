@@ -26,7 +26,7 @@ A step. I is the unknown. Given I, backward Euler makes (1) with (4) a quadratic
 large the step. The excess of the trial stress over (7) is positive at I = 0 and negative once the trial shear is
 plastic: bracketed, and found by the secant method with bisection. Looser than phi_min, compaction can take the pressure
 faster than any I uses up the shear; then there is no root, and the grains part: p = 0, phi_j = phi. Open points neither
-flow nor dilate, and close where they opened.
+flow nor dilate, and close where they opened. A root that is not found makes the stress NaN.
 
 Contains: at a = 0 the friction mu(I) at constant phi_j; at chi = 0 and slow shear a law without rate, whose critical
 states are tau = mu_0 p on the line phi = phi_0 (1 + b z)/(1 - z).
@@ -67,7 +67,9 @@ from grainlaw.plugins.mu_i.friction import friction_of_inertial_number
 
 # Of the trial stress.
 TOLERANCE = 1e-11
-MAXIMUM_ITERATIONS = 100
+# The same, where round-off keeps I from more.
+LARGEST_ERROR = 1e-6
+MAXIMUM_ITERATIONS = 200
 # Beyond it no pressure is left: at 1000 1/s and 15 mm less than 1e-6 Pa.
 LARGEST_NUMBER = 1e6
 
@@ -148,10 +150,16 @@ class Flow(NamedTuple):
     excess: float
 
 
+PARTED, NOT_FOUND = Flow(0.0, 0.0, 0.0, 0.0), Flow(math.nan, math.nan, math.nan, math.nan)
+
+
 def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
-    """At rest, with the packing at which (1) returns the present pressure, which is the largest that it has borne."""
-    elastic_strain = elastic_strain_of(pressure(stress), parameters)
-    return State(density / parameters.grain_density * (1.0 - elastic_strain), elastic_strain, 0.0)
+    """At rest, with the packing at which (1) returns the present pressure, which is the largest that it has borne.
+
+    NaN for a pressure of E and more, which no packing has.
+    """
+    z = elastic_strain_of(pressure(stress), parameters)
+    return State(density / parameters.grain_density * (1.0 - z) if z < 1.0 else math.nan, z, 0.0)
 
 
 @pointwise
@@ -229,7 +237,7 @@ def friction(number: float, parameters: Parameters) -> float:
 def flow_of_step(increment: Increment, guess: float, parameters: Parameters) -> Flow:
     """The step whose shear stress is the strength at its own inertial number, from the I of the step before.
 
-    Without pressure where there is no such number.
+    Without pressure where there is no such number, NaN where it is not found.
     """
     still = flow_at(0.0, increment, parameters)
     if still.excess <= 0.0:
@@ -245,15 +253,15 @@ def flow_of_step(increment: Increment, guess: float, parameters: Parameters) -> 
         else:
             upper = flow.number
         if upper == math.inf and lower > LARGEST_NUMBER:
-            return Flow(0.0, 0.0, 0.0, 0.0)
+            return PARTED
         trial = 0.5 * (lower + upper) if upper < math.inf else 10.0 * lower
         if abs(flow.excess) < 0.5 * abs(last.excess):
             secant = flow.number + flow.excess * (flow.number - last.number) / (last.excess - flow.excess)
             trial = secant if lower < secant < upper else trial
         if trial in (lower, upper):
-            return flow
+            break
         last, flow = flow, flow_at(trial, increment, parameters)
-    return flow
+    return flow if abs(flow.excess) <= LARGEST_ERROR * increment.trial_shear_stress else NOT_FOUND
 
 
 @pointwise
@@ -280,7 +288,7 @@ def flow_at(number: float, increment: Increment, parameters: Parameters) -> Flow
         B, C = B + b, C + b * end
     root = math.sqrt(B * B + 4.0 * A * C)
     # Of the two forms of the root, the one that subtracts nothing.
-    z = 2.0 * C / (B + root) if B > 0.0 else (root - B) / (2.0 * A)
+    z = (root - B) / (2.0 * A) if B < 0.0 else 2.0 * C / (B + root)
     psi = parameters.dilatancy_coefficient * (dense - slope * z)
     mu = friction(number, parameters)
     strength_over_z = (

@@ -220,7 +220,7 @@ def test_the_answer_converges_with_the_step_in_first_order():
 def test_grains_part_where_no_inertial_number_takes_up_the_shear():
     """Looser than phi_min, shear compacts faster than any I uses up the trial stress."""
     increment = mu_i_state.Increment(0.39, 1e-6, 0.02, 0.02, 0.0, 0.05, 5000.0, 1e4)
-    assert mu_i_state.flow_of_step(increment, 1.0, DEM) == mu_i_state.Flow(0.0, 0.0, 0.0, 0.0)
+    assert mu_i_state.flow_of_step(increment, 1.0, DEM) == mu_i_state.PARTED
 
 
 def test_open_points_close_where_they_opened():
@@ -240,3 +240,8 @@ def test_open_points_close_where_they_opened():
 def test_contradictions_are_refused(name, value):
     assert name in mu_i_state.inconsistency(DEM._replace(**{name: value}))
     assert mu_i_state.inconsistency(DEM) == ""
+
+
+def test_a_pressure_that_no_packing_has_is_no_number():
+    point = start(0.6, 1.01 * DEM.stiffness)
+    assert math.isnan(pressure(moved(point, isotropic(0.0), 1.0)[0]))
