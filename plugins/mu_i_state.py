@@ -348,18 +348,18 @@ def density_at_rest(mean_pressure: float, parameters: Parameters) -> float:
 
 
 DEM = Parameters(
-    static_friction=0.5152,
-    dynamic_friction=0.9013,
-    inertial_number_constant=0.2567,
-    critical_solid_fraction=0.5374,
-    dilation_slope=0.2486,
+    static_friction=0.515,
+    dynamic_friction=0.900,
+    inertial_number_constant=0.252,
+    critical_solid_fraction=0.538,
+    dilation_slope=0.249,
     loosest_solid_fraction=0.4,
     resting_solid_fraction=0.548,
     settling_rate=1.0,
-    dilatancy_coefficient=7.38,
-    hidden_dilatancy=0.534,
-    stiffness=14.79e6,
-    compaction=0.0158,
+    dilatancy_coefficient=7.15,
+    hidden_dilatancy=0.543,
+    stiffness=16.5e6,
+    compaction=0.0169,
     poisson_ratio=0.2,
     grain_density=2450.0,
     grain_diameter=0.015,
@@ -378,8 +378,8 @@ LAW = Law(
     parameter_sets={
         "dem": ParameterSet(
             DEM,
-            "element tests of discrete elements, friction 0.7 with rolling resistance, 12 to 18 mm: steady shear, "
-            "start of shear, compression; phi_min, k and nu are choices",
+            "fitted to steady shear, start of shear and compression of discrete elements, friction 0.7 with rolling "
+            "resistance, 12 to 18 mm; phi_n the looser of two compressed packings; phi_min, k and nu are choices",
             density_at_rest,
         ),
         "paper": ParameterSet(

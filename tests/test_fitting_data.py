@@ -1,5 +1,7 @@
 """What the laws are fitted to: data files from the reference set, the start of shear as an element test."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from typer.testing import CliRunner
@@ -9,10 +11,18 @@ from grainlaw.materials import get_material
 from grainlaw.materials.calibration.data import read_data
 from grainlaw.materials.calibration.fit import calibrate
 from grainlaw.materials.calibration.model import ForwardModel, answer
+from grainlaw.materials.calibration.shipped import data_file
 from grainlaw.plugins import mu_i_phi_i
 from grainlaw.validation.dem.batch import case_named
 from grainlaw.validation.dem.coverage import missing_runs, present_runs, seeds_told
-from grainlaw.validation.dem.judging.fitting_data import FLOW_FILE, START_FILE, START_STRAINS, write_data
+from grainlaw.validation.dem.judging.fitting_data import (
+    CYCLE_FILE,
+    FLOW_FILE,
+    PEAK_FILE,
+    START_FILE,
+    START_STRAINS,
+    write_data,
+)
 from grainlaw.validation.dem.judging.judged_laws import JUDGED_LAWS
 from grainlaw.validation.dem.judging.variants import CONTROLS, LIMITS
 from grainlaw.validation.dem.runs import Run, runs_of
@@ -43,7 +53,22 @@ def test_no_granular_law_is_left_unjudged():
         "drucker_prager",
         "modified_cam_clay",
         "mu_i_mcc",
+        "mu_i_state",
     }
+
+
+def test_shipped_data_of_grains_are_those_of_the_comparison(folder):
+    shipped = {"grains_steady_shear": FLOW_FILE, "grains_shear_start": PEAK_FILE, "grains_compression": CYCLE_FILE}
+    for name, file in shipped.items():
+        assert data_file(Path(name)).read_text() == (folder / file).read_text()
+
+
+def test_the_set_dem_of_the_unified_law_is_what_the_element_tests_give(folder):
+    (judged,) = (found for found in JUDGED_LAWS if found.law == "mu_i_state")
+    values = get_material("mu_i_state").parameter_sets["dem"].parameters._asdict()
+    assert judged.given == {name: values[name] for name in judged.given}
+    fit = calibrate("mu_i_state", [folder / name for name in judged.data], fixed=judged.given, parameters="dem")
+    assert fit.values == pytest.approx(values, rel=3e-3)
 
 
 def test_variants_change_what_their_law_has():

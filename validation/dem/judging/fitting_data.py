@@ -3,6 +3,7 @@
 Friction is taken over the mean pressure, as the laws define it; the grains show 6-10 % less over the normal stress.
 """
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,6 +15,8 @@ from grainlaw.validation.reference.reference_set import ReferenceSet, Rows
 SHEAR_FILE, SLOW_SHEAR_FILE, COMPRESSION_FILE = "shear.csv", "slow_shear.csv", "compression.csv"
 # Steady shear with its solid fraction; the same, said to start at the critical state of a Cam Clay; its start.
 FLOW_FILE, CRITICAL_FLOW_FILE, START_FILE = "flow.csv", "critical_flow.csv", "shear_start.csv"
+# The start of shear with its peak, and compression with unloading, of every packing.
+PEAK_FILE, CYCLE_FILE = "shear_start_peak.csv", "compression_cycle.csv"
 # A law without rates is fitted where the friction of the grains hardly depends on them.
 SLOW = 0.036
 # Of the grains in the columns [Pa].
@@ -23,6 +26,7 @@ COMPRESSION_POINTS = 30
 PRESSURE_ERROR = 0.05
 # Past the elastic rise of the stress, and up to where the bulk of every packing has been sheared.
 START_STRAINS = np.linspace(0.04, 0.16, 7)
+PEAK_STRAINS = np.array([0.01, 0.02, 0.03, 0.04, 0.05, *START_STRAINS[1:]])
 FRICTION = ("friction_of_mean_pressure [1]", "standard_error_friction_of_mean_pressure [1]")
 FRACTION = ("solid_fraction [1]", "standard_error_solid_fraction [1]")
 NUMBER, STRAIN = "engineering_inertial_number [1]", "engineering_shear_strain [1]"
@@ -46,9 +50,11 @@ def write_data(reference: ReferenceSet, folder: Path, grain_density: float, grai
         CRITICAL_FLOW_FILE: _shear_table(steady, grains | critical, with_fraction=True),
     }
     if reference.shear_start:
-        texts[START_FILE] = _start_table(reference.shear_start, grains)
+        texts[START_FILE] = _start_table(reference.shear_start, grains, START_STRAINS)
+        texts[PEAK_FILE] = _start_table(reference.shear_start, grains, PEAK_STRAINS)
     if reference.compression:
         texts[COMPRESSION_FILE] = _compression_table(reference.compression, grain_density)
+        texts[CYCLE_FILE] = _cycle_table(reference.compression, grain_density)
     for name, text in texts.items():
         atomic.write_text(folder / name, text)
 
@@ -69,14 +75,14 @@ def _shear_table(rows: Rows, statements: dict[str, str], with_fraction: bool) ->
     )
 
 
-def _start_table(rows: Rows, statements: dict[str, str]) -> str:
+def _start_table(rows: Rows, statements: dict[str, str], strains: np.ndarray) -> str:
     """Means over the packings at common strains, with standard errors from their scatter."""
-    seeds = [[row for row in rows if row["seed"] == seed] for seed in sorted({row["seed"] for row in rows})]
+    seeds = _by_seed(rows)
     measured = []
     for name in ("tau_over_p3", "phi"):
-        values = np.array([_at_strains(seed, name) for seed in seeds])
+        values = np.array([_at_strains(seed, name, strains) for seed in seeds])
         measured += [values.mean(axis=0), values.std(axis=0, ddof=1) / np.sqrt(len(seeds))]
-    sheared = [row for row in rows if row["strain"] <= START_STRAINS[-1]]
+    sheared = [row for row in rows if row["strain"] <= strains[-1]]
     density = float(statements["grain_density"]) * np.mean([seed[0]["phi"] for seed in seeds])
     # The law's own rate is half of the engineering one.
     number = 0.5 * np.mean([row["I"] for row in sheared])
@@ -87,14 +93,18 @@ def _start_table(rows: Rows, statements: dict[str, str]) -> str:
         "held_inertial_number": f"{number:.4g}",
         "density": f"{density:.6g}",
     }
-    columns = np.column_stack([START_STRAINS, *measured])
+    columns = np.column_stack([strains, *measured])
     return _table(own | statements, (STRAIN, *FRICTION, *FRACTION), [tuple(row) for row in columns.tolist()])
 
 
-def _at_strains(rows: Rows, name: str) -> np.ndarray:
+def _by_seed(rows: Rows) -> list[Rows]:
+    return [[row for row in rows if row["seed"] == seed] for seed in sorted({row["seed"] for row in rows})]
+
+
+def _at_strains(rows: Rows, name: str, at: np.ndarray) -> np.ndarray:
     """A quantity of one packing at the common strains; where the bulk turns back, what it was at first."""
     strains = np.maximum.accumulate([row["strain"] for row in rows])
-    return np.interp(START_STRAINS, strains, [row[name] for row in rows])
+    return np.interp(at, strains, [row[name] for row in rows])
 
 
 def _compression_table(rows: Rows, grain_density: float) -> str:
@@ -115,7 +125,36 @@ def _compression_table(rows: Rows, grain_density: float) -> str:
     )
 
 
+def _cycle_table(rows: Rows, grain_density: float) -> str:
+    """Compression to the largest pressure and back, each packing a test of its own; measured as in the columns."""
+    lines = []
+    for packing in _by_seed(rows):
+        top = int(np.argmax([row["p"] for row in packing]))
+        first = next(row for row in packing if row["p"] >= SMALLEST_PRESSURE)
+        for index, row in enumerate(packing):
+            measured = row is not first and SMALLEST_PRESSURE <= row["p"] <= LARGEST_PRESSURE
+            if measured or index == top:
+                start = first["p"], grain_density * first["phi"], np.log(row["phi"] / first["phi"])
+                lines.append((*start, *((row["p"], PRESSURE_ERROR * row["p"]) if measured else (math.nan, math.nan))))
+    return _table(
+        {"test": "isotropic", "grain_density": f"{grain_density:g}", "strain_step": "2e-3"},
+        (
+            "initial_pressure",
+            "density",
+            "volumetric_strain [1]",
+            "pressure [Pa]",
+            "standard_error_pressure [Pa]",
+        ),
+        lines,
+    )
+
+
 def _table(statements: dict[str, str], names: Sequence[str], rows: Sequence[tuple[float, ...]]) -> str:
     lines = [f"# {name} = {value}" for name, value in statements.items()]
-    lines += [",".join(names), *(",".join(f"{value:.6g}" for value in row) for row in rows)]
+    lines += [",".join(names), *(",".join(_cell(value) for value in row) for row in rows)]
     return "\n".join(lines) + "\n"
+
+
+def _cell(value: float) -> str:
+    """A number, or nothing where nothing was measured."""
+    return "" if math.isnan(value) else f"{value:.6g}"

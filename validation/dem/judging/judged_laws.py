@@ -4,7 +4,9 @@ from grainlaw.validation.dem.judging.fitted_laws import JudgedLaw
 from grainlaw.validation.dem.judging.fitting_data import (
     COMPRESSION_FILE,
     CRITICAL_FLOW_FILE,
+    CYCLE_FILE,
     FLOW_FILE,
+    PEAK_FILE,
     SHEAR_FILE,
     SLOW_SHEAR_FILE,
     START_FILE,
@@ -33,6 +35,20 @@ JUDGED_LAWS = (
         # As loose as the fastest shear.
         given={**GRAINS, **POISSON_RATIO, "loosest_solid_fraction": 0.4},
         limits="one rate of dilation for all packings; no fabric, no collisions",
+    ),
+    JudgedLaw(
+        law="mu_i_state",
+        title="mu(I), state",
+        data=(FLOW_FILE, PEAK_FILE, CYCLE_FILE),
+        # As loose as the fastest shear; at rest, as the looser of the compressed packings; k hardly matters.
+        given={
+            **GRAINS,
+            **POISSON_RATIO,
+            "loosest_solid_fraction": 0.4,
+            "resting_solid_fraction": 0.548,
+            "settling_rate": 1.0,
+        },
+        limits="no fabric, no collisions; softening without a length",
     ),
     JudgedLaw(
         law="mu_i_elastoplastic",
