@@ -141,6 +141,15 @@ def _name_by_values(closure: Any) -> None:
     closure.recompile()
 
 
+def _parts(law: Law) -> list[Callable[..., Any]]:
+    return [part for _, part in sorted(vars(law).items()) if callable(part)]
+
+
+def mark_of_law(law: Law) -> str:
+    """A mark that changes with everything that a law reaches: another law of the same name has another mark."""
+    return digest_of_reached(_parts(law))
+
+
 @cache
 def pointwise_law(law: Law, precision: str = "double") -> PointwiseLaw:
     """The functions of a law in a precision, registered with the compiler."""
@@ -148,7 +157,7 @@ def pointwise_law(law: Law, precision: str = "double") -> PointwiseLaw:
     for kind in (law.parameters, law.state):
         _name_by_module(kind)
     register: Callable[..., Any] = in_single if precision == "single" else _register_marked
-    parts = [part for _, part in sorted(vars(law).items()) if callable(part)]
+    parts = _parts(law)
     for closure in compiled_closures(parts):
         _name_by_values(closure)
     return PointwiseLaw(

@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,6 +15,7 @@ import pyvista
 
 from grainlaw.materials import InputError
 from grainlaw.materials.element.mixed import read_control
+from grainlaw.materials.errors import InputWarning
 from grainlaw.mpm_core.scene.file import read_content
 from grainlaw.validation.grains.observe import observe_folder
 from grainlaw.validation.grains.readers.run_folder import read_snapshots
@@ -248,7 +250,7 @@ REFUSED = {
     "in the plane": (lambda f, t: (f / "a.data").write_text("1 0 0 0 1 1\n0 0 0 0 0.01 0 0 0\n"), "two-dimensional"),
     "mercury cut": (lambda f, t: (f / "a.data").write_text("2 0 0 0 0 1 1 1\n" + "0 " * 14), "1 of 2 rows"),
     "far away": (
-        lambda f, t: (f / "d.0").write_text(dump(0, "x y z radius", "0 0.01 0 0.007\n1e7 0.02 1e7 0.007\n")),
+        lambda f, t: (f / "d.0").write_text(dump(0, "x y z radius", "0 0.01 0 0.007\n1e7 0.05 1e7 0.007\n")),
         "leave the box",
     ),
 }
@@ -261,6 +263,74 @@ def test_what_has_no_one_meaning_is_refused(tmp_path, truth, kind):
     with pytest.raises(InputError, match=message) as caught:
         observe_folder(tmp_path)
     assert "\n" not in str(caught.value)
+
+
+def _turned(folder: Path, shots: list[GrainSnapshot], order: tuple[int, int, int], signs: tuple[int, int, int]) -> None:
+    """The collapse with its axes x, y, z in another order or direction."""
+    for step, shot in zip(STEPS, shots, strict=True):
+        axes = [sign * shot.positions[:, axis] for axis, sign in zip(order, signs, strict=True)]
+        (folder / f"d.{step}").write_text(dump(step, "x y z radius", rows(*axes, radii(shot))))
+
+
+def _with_masses(folder: Path, shots: list[GrainSnapshot], unit: float) -> None:
+    for step, shot in zip(STEPS, shots, strict=True):
+        body = rows(*columns(shot), unit * 2450.0 * shot.solid_volumes)
+        (folder / f"d.{step}").write_text(dump(step, f"{NAMES} mass", body))
+
+
+def _with_densities(folder: Path, shots: list[GrainSnapshot], density: float) -> None:
+    for step, shot in zip(STEPS, shots, strict=True):
+        (folder / f"d.{step}").write_text(dump(step, f"{NAMES} rho", rows(*columns(shot), [density] * shot.count)))
+
+
+CONTRADICTIONS = {
+    "y up, z the depth": (lambda f, t: _turned(f, t, (0, 2, 1), (1, 1, 1)), {}, "along y .*is y up in this dump"),
+    "y up, of any depth": (lambda f, t: _turned(f, t, (0, 2, 1), (1, 1, 1)), {"depth": 0.25}, "is y up in this dump"),
+    "z down": (lambda f, t: _turned(f, t, (0, 1, 2), (1, 1, -1)), {}, "is z down in this dump"),
+    "x up, z the depth": (lambda f, t: _turned(f, t, (2, 0, 1), (1, 1, 1)), {}, r"= 0\.06 m, but the grains span"),
+    "depth in centimetres": (lambda f, t: _turned(f, t, (0, 1, 2), (1, 1, 1)), {"depth": 6.0},
+                             r"run\.json: depth = 6 m, but the grains span 0\.0[67]\d* m along y"),
+    "half of the depth": (lambda f, t: _turned(f, t, (0, 1, 2), (1, 1, 1)), {"depth": 0.03}, "the grains span"),
+    "masses in grams": (lambda f, t: _with_masses(f, t, 1e3), {},
+                        r"d\.0: the grains have 2\.45e\+06 kg/m3, but run\.json says grain_density = 2450; .*in grams"),
+    "densities in g/cm3": (lambda f, t: _with_densities(f, t, 2.45), {}, r"the grains have 2\.45 kg/m3, but run\.json"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", CONTRADICTIONS)
+def test_what_contradicts_its_description_is_refused(tmp_path, truth, kind):
+    spoil, changes, message = CONTRADICTIONS[kind]
+    spoil(describe(tmp_path, **({"time_step": TIME_STEP} | changes)), truth)
+    with pytest.raises(InputError, match=message) as caught:
+        observe_folder(tmp_path)
+    assert "\n" not in str(caught.value)
+    with pytest.raises(InputError, match=message):
+        load_reference(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "write",
+    [
+        lambda f, t: _with_masses(f, t, 1.0),
+        lambda f, t: _with_densities(f, t, 2600.0),
+        lambda f, t: _turned(f, t, (0, 1, 2), (-1, 1, 1)),
+    ],
+    ids=["masses", "densities", "mirrored"],
+)
+def test_what_agrees_is_read_without_a_warning(tmp_path, truth, write):
+    write(describe(tmp_path, time_step=TIME_STEP), truth)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert observe_folder(tmp_path).times[-1] == pytest.approx(1.0002)
+
+
+def test_doubtful_descriptions_are_warned_about(tmp_path, truth):
+    _with_densities(describe(tmp_path, time_step=TIME_STEP, grain_density=2.45), truth, 2.45)
+    with pytest.warns(InputWarning, match=r"run\.json: grain_density = 2\.45 kg/m3 is that of no grains; .* 2450"):
+        observe_folder(tmp_path)
+    _turned(describe(tmp_path, time_step=TIME_STEP), truth, (2, 1, 0), (1, 1, 1))
+    with pytest.warns(InputWarning, match="is x up in this dump"):
+        observe_folder(tmp_path)
 
 
 def test_no_frame_after_the_release(tmp_path, truth):

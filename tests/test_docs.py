@@ -15,7 +15,7 @@ from documentation import DOCS, ROOT, page_script, run_page, run_pages
 from pydantic import BaseModel
 
 from grainlaw.cli.main import app
-from grainlaw.mpm_core.output.recorder import OWN_FILES
+from grainlaw.mpm_core.output.prepare import OWN_FILES
 from grainlaw.mpm_core.output.summary import RunSummary
 from grainlaw.reference.command_page import commands
 from grainlaw.reference.law_curves import picture

@@ -97,8 +97,8 @@ def test_faulty_contacts_are_refused_in_one_line(tmp_path):
 def write_stack(folder, code):
     upper, lower, force = stack()
     centres = np.vstack([lower[:1], upper])
-    # A second grain beside the first, so that the stack has a depth.
-    centres = np.vstack([centres, [0.0, 0.05, 0.5 * DIAMETER]])
+    # A second grain beside the first, so that the grains span the depth.
+    centres = np.vstack([centres, [0.0, 0.0, 0.5 * DIAMETER]])
     grains = np.column_stack([centres, np.full(len(centres), 0.5 * DIAMETER)])
     contacts = np.column_stack([upper, lower, np.zeros((len(upper), 3)), force])
     if code == "liggghts":

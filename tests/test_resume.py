@@ -1,5 +1,6 @@
 """A run that was stopped and goes on leaves the same bits as one that was not."""
 
+import errno
 import os
 import re
 import signal
@@ -10,7 +11,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from scenes_for_tests import COLUMN, call_command_line, changed, write_scene
+from scenes_for_tests import COLUMN, FALLING_SPRING, call_command_line, changed, grainlaw, write_plugin, write_scene
 
 from grainlaw.materials import InputError
 from grainlaw.mpm_core import Scene, run
@@ -174,16 +175,28 @@ def finished(folder):
     return run(Scene.from_dict(with_output("vtu", {"time.end": 0.02})), folder)
 
 
+def unfinished(folder):
+    """A run as one that was killed before its end leaves it; its checkpoint."""
+    finished(folder)
+    (folder / "summary.json").unlink()
+    return folder / "checkpoint.h5"
+
+
 @pytest.mark.parametrize(
     ("prepare", "changes", "message"),
     [
         (lambda folder: None, {}, "holds no run to resume"),
         (lambda folder: folder.mkdir(), {}, "holds no run to resume"),
         (lambda folder: folder.write_text("a file"), {}, "holds no run to resume"),
-        (finished, {"time.end": 0.03}, "holds a run of another scene than the one to resume"),
-        (lambda folder: [finished(folder), (folder / "checkpoint.h5").unlink()], {},
+        (finished, {"time.end": 0.01}, r"time\.end = 0\.02 there, 0\.01 here; a time\.end may only be later"),
+        (finished, {"grid.cell_size": 0.05, "body.0.density": 1400.0},
+         r"another scene .*: grid\.cell_size = 0\.025 there, 0\.05 here; also body\.0\.density = 1500\.0 there, 1400"),
+        (finished, {"material.mu_i_lc.bulk_modulus": 3e4, "time.end": 0.04},
+         r"resume: material\.mu_i_lc\.bulk_modulus = 20000\.0 there, 30000\.0 here\n"),
+        (finished, {"output.interval": 0.01}, r"output\.interval = 0\.03 there, 0\.01 here"),
+        (lambda folder: unfinished(folder).unlink(), {},
          r"holds no checkpoint\.h5 to resume from; --overwrite starts the run again"),
-        (lambda folder: [finished(folder), (folder / "checkpoint.h5").write_bytes(b"rubbish")], {},
+        (lambda folder: unfinished(folder).write_bytes(b"rubbish"), {},
          r"checkpoint\.h5 cannot be read"),
     ],
 )  # fmt: skip
@@ -200,3 +213,136 @@ def test_what_cannot_be_resumed_is_said_in_one_line(tmp_path, monkeypatch, capsy
     assert error.count("\n") == 1
     assert re.search(message, error)
     assert ({path.name: path.read_bytes() for path in out.iterdir()} if out.is_dir() else {}) == before
+
+
+@pytest.mark.parametrize("output", ["vtu", "both"])
+@pytest.mark.parametrize("stated", [True, False], ids=["intervals stated", "intervals by default"])
+@pytest.mark.parametrize("first_end", [0.06, 0.07], ids=["end on a frame", "end between frames"])
+def test_a_longer_run_goes_on_to_the_same_bits_as_one_that_ran_through(tmp_path, output, stated, first_end):
+    settings = {"pictures": False, **OUTPUTS[output]}
+    intervals = {"interval": 0.03, "history_interval": 0.004} if stated else {}
+    # The intervals of the shorter run, which a longer one keeps.
+    kept = intervals or {"interval": first_end / 30, "history_interval": first_end / 300}
+    through, longer = tmp_path / "through", tmp_path / "longer"
+    run(Scene.from_dict(changed(COLUMN, {"time.end": 0.1, "output": settings | kept})), through)
+    for end in (first_end, 0.08, 0.1):
+        scene = Scene.from_dict(changed(COLUMN, {"time.end": end, "output": settings | intervals}))
+        summary = run(scene, longer, resume=longer.exists())
+        assert summary.simulated_time == end
+        assert read_history(longer)["t"][-1] == end
+    assert_same_runs(through, longer)
+    assert (through / "scene.toml").read_text() == (longer / "scene.toml").read_text()
+
+
+def falling_spring(folder, **plugin):
+    """What the command line takes to run a law of its own."""
+    path = write_scene(folder / "scene.toml", FALLING_SPRING, {"time.end": 0.05})
+    law = write_plugin(folder / "springy.py", **plugin)
+    return "run", path, "--plugin", law, "--out", folder / "out", "--threads", 1
+
+
+@pytest.mark.parametrize(("edit", "goes_on"), [({}, True), ({"update": "new = 0.5 * new"}, False)])
+def test_a_run_does_not_go_on_with_an_edited_law(tmp_path, edit, goes_on):
+    assert grainlaw(*falling_spring(tmp_path)).returncode == 0
+    # As if the run had been killed in its last step.
+    (tmp_path / "out" / "summary.json").unlink()
+    done = grainlaw(*falling_spring(tmp_path, **edit), "--resume")
+    assert (done.returncode == 0) is goes_on
+    if not goes_on:
+        assert re.search(
+            r"out: the law spring \(.*springy\.py\) was changed since the run began; .* --overwrite\n$", done.stderr
+        )
+        assert done.stderr.count("\n") == 1
+
+
+def test_a_second_run_into_the_folder_of_a_run_is_refused(tmp_path):
+    scene = Scene.from_dict(with_output("vtu", {"time.end": 0.02}))
+    refused = []
+
+    def start_another(simulation, dt):
+        for choice in ({"overwrite": True}, {"resume": True}, {}):
+            with pytest.raises(InputError, match=r"another run is writing to .*; wait for its end") as caught:
+                run(scene, tmp_path, **choice)
+            refused.append(str(caught.value))
+
+    before = run(scene, tmp_path, progress=start_another)
+    assert len(refused) == 3 * before.steps
+    assert run(scene, tmp_path, overwrite=True).final == before.final
+
+
+# The command on a disk on which no file can be larger than so many bytes, from the fourth frame on.
+ON_A_FULL_DISK = """
+import resource, sys
+from grainlaw.cli.main import main
+from grainlaw.mpm_core.output import recorder
+
+write, limit = recorder.Recorder._write_frame, int(sys.argv.pop())
+def write_frame(self):
+    if self.clock.next_frame == 3:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+    write(self)
+recorder.Recorder._write_frame = write_frame
+main()
+"""
+
+
+def size_of(folder, name):
+    return (folder / name).stat().st_size
+
+
+FILES = [("vtu", "points_000001.vtu"), ("vtkhdf", "run.vtkhdf"), ("vtkhdf", "checkpoint.h5"), ("both", "history.csv")]
+
+
+@pytest.mark.parametrize(("output", "name"), FILES)
+def test_a_full_disk_ends_in_one_line_and_the_run_goes_on_to_the_same_bits(tmp_path, output, name):
+    scene = Scene.from_dict(with_output(output))
+    whole, full = tmp_path / "whole", tmp_path / "full"
+    run(scene, whole)
+    # too small for the file that is meant; the others are smaller, or come later
+    limit = {"run.vtkhdf": 150_000, "history.csv": 4_000}.get(name, size_of(whole, name) - 500)
+    command = [sys.executable, "-c", ON_A_FULL_DISK, "run", write_scene(tmp_path / "s.toml", with_output(output))]
+    done = subprocess.run(
+        [*command, "--out", full, "--threads", "1", str(limit)], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1, done
+    assert re.fullmatch(
+        rf"error: {full} cannot be written: File too large; --resume goes on from t = 0\.06 s, last checkpoint: "
+        rf"{full / 'checkpoint.h5'}",
+        done.stderr.splitlines()[-1],
+    )
+    assert not list(full.glob(".partial-*"))
+    run(scene, full, resume=True)
+    assert_same_runs(whole, full)
+
+
+def test_a_disk_that_is_full_from_the_start_is_one_line(tmp_path, monkeypatch, capsys):
+    def refuse(*arguments):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(recorder, "write_checkpoint", refuse)
+    path = write_scene(tmp_path / "scene.toml", with_output("vtu"))
+    assert call_command_line(monkeypatch, "run", path, "--out", tmp_path / "out") == 1
+    assert capsys.readouterr().err == (
+        f"error: {tmp_path / 'out'} cannot be written: No space left on device; there is no checkpoint yet: "
+        "--overwrite begins the run again\n"
+    )
+
+
+def test_ctrl_c_says_how_to_go_on(tmp_path):
+    scene_file, out = write_scene(tmp_path / "scene.toml", with_output("vtu", FINE)), tmp_path / "out"
+    command = [sys.executable, "-m", "grainlaw", "run", scene_file, "--out", out, "--threads", "1"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 120
+    while not (out / "points_000002.vtu").exists() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    process.send_signal(signal.SIGINT)
+    printed, errors = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert printed == ""
+    line = errors.splitlines()[-1]
+    assert re.fullmatch(
+        rf"error: stopped by Ctrl-C; --resume goes on from t = \S+ s, last checkpoint: {out / 'checkpoint.h5'}", line
+    )
+    assert "Traceback" not in errors
+    time_of_checkpoint = float(re.search(r"t = (\S+) s", line)[1])
+    assert time_of_checkpoint == pytest.approx(read_collection(out)[-1].time, abs=0.031)

@@ -7,6 +7,7 @@ import typer
 
 from grainlaw.cli.options import PluginFiles, counted, load_plugins
 from grainlaw.cli.scene_options import SceneFile, SetValues, load_scene
+from grainlaw.materials import SimulationError
 
 if TYPE_CHECKING:
     from grainlaw.mpm_core.output.summary import RunSummary
@@ -36,15 +37,19 @@ def run(
     from grainlaw.mpm_core.stepping.run import run as run_scene
     from grainlaw.progress import lines, shown_progress
 
-    with shown_progress(scene.time.end) as progress:
-        summary = run_scene(
-            scene,
-            folder,
-            threads=usable_threads(threads),
-            resume=resume,
-            overwrite=overwrite,
-            progress=progress or lines(scene.time.end),
-        )
+    try:
+        with shown_progress(scene.time.end) as progress:
+            summary = run_scene(
+                scene,
+                folder,
+                threads=usable_threads(threads),
+                resume=resume,
+                overwrite=overwrite,
+                progress=progress or lines(scene.time.end),
+            )
+    except KeyboardInterrupt as interrupt:
+        notes = getattr(interrupt, "__notes__", ["stopped by Ctrl-C before the first step; nothing was written"])
+        raise SimulationError(notes[-1]) from interrupt
     _print_result(folder, summary)
 
 

@@ -1,13 +1,17 @@
 """`checkpoint.h5`: the whole state of a run, from which it resumes bit for bit."""
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import h5py
 
 from grainlaw.materials import InputError, atomic
+from grainlaw.materials.compilation import mark_of_law
+from grainlaw.materials.law import Law
 from grainlaw.mpm_core.grid.active_nodes import active_between
 from grainlaw.mpm_core.ledger import Ledger
+from grainlaw.mpm_core.output.hdf5_file import new_hdf5
 from grainlaw.mpm_core.simulation import Simulation
 
 CHECKPOINT_NAME = "checkpoint.h5"
@@ -17,10 +21,14 @@ ACTIVE_ROWS = ("first_rows", "last_rows")
 
 @dataclass
 class Clock:
-    """What the time loop remembers besides the simulation: next frame, next history row, wall time so far [s]."""
+    """What the time loop remembers besides the simulation.
+
+    The next frame and the next row of the history, in intervals; how many rows were due so far; wall time so far [s].
+    """
 
     next_frame: int = 0
     next_history: int = 0
+    history_rows: int = 0
     wall_time: float = 0.0
 
 
@@ -34,7 +42,7 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
         "signal_speed": simulation.signal_speed,
         "strain_rate": simulation.strain_rate,
     }
-    with atomic.replacing(folder / CHECKPOINT_NAME) as partial, h5py.File(partial, "w") as file:
+    with atomic.replacing(folder / CHECKPOINT_NAME) as partial, new_hdf5(partial) as file:
         file.attrs.update(scalars)
         for name, part in (("clock", clock), ("ledger", simulation.ledger)):
             file.create_group(name).attrs.update(asdict(part))
@@ -46,7 +54,7 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
             group.create_dataset("points", data=body.points)
             group.create_dataset("ids", data=body.ids)
             group.create_dataset("stripe_starts", data=body.stripe_starts)
-            group.attrs.update(law=body.law.name, rows=", ".join(body.row_names))
+            group.attrs.update(law=body.law.name, law_mark=mark_of_law(body.law), rows=", ".join(body.row_names))
             group.attrs.update(awake=body.awake, signal_speed_asleep=body.signal_speed_asleep)
         if simulation.sleep is not None:
             sleep = file.create_group("sleep")
@@ -71,6 +79,31 @@ def read_checkpoint(folder: Path, simulation: Simulation) -> Clock:
         raise InputError(f"{path} cannot be read: {error}") from error
     except ValueError as error:
         raise InputError(f"{path} belongs to another scene: {error}") from error
+
+
+def refuse_other_laws(folder: Path, laws: Sequence[Law]) -> None:
+    """Raises InputError where the law of a body is not what it was, in its own file or in what it takes from others."""
+    try:
+        with h5py.File(folder / CHECKPOINT_NAME) as file:
+            marks = [str(file[f"body/{number}"].attrs["law_mark"]) for number in range(len(laws))]
+    except (OSError, KeyError):
+        return  # what is wrong with it is said where it is read
+    for law, mark in zip(laws, marks, strict=True):
+        if mark != mark_of_law(law):
+            raise InputError(
+                f"{folder}: the law {law.name} ({law.source_file}) was changed since the run began; undo that to go "
+                "on, or begin the run again with --overwrite"
+            )
+
+
+def how_to_go_on(folder: Path) -> str:
+    """What can be done with a run that was stopped: from when, and from which file."""
+    path = folder / CHECKPOINT_NAME
+    try:
+        with h5py.File(path) as file:
+            return f"--resume goes on from t = {float(file.attrs['time']):.6g} s, last checkpoint: {path}"
+    except (OSError, KeyError):
+        return "there is no checkpoint yet: --overwrite begins the run again"
 
 
 def _restore(file: h5py.File, simulation: Simulation) -> Clock:
@@ -98,4 +131,5 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     simulation.keep_to(active_between(*(file[f"active/{name}"][:] for name in ACTIVE_ROWS)))
     simulation.ledger = Ledger(**{name: float(value) for name, value in file["ledger"].attrs.items()})
     clock = file["clock"].attrs
-    return Clock(int(clock["next_frame"]), int(clock["next_history"]), float(clock["wall_time"]))
+    counts = {name: int(clock[name]) for name in ("next_frame", "next_history", "history_rows")}
+    return Clock(wall_time=float(clock["wall_time"]), **counts)

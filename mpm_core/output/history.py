@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +62,8 @@ class HistoryWriter:
         path = folder / HISTORY_NAME
         if not path.exists():
             atomic.write_text(path, _line(column.name for column in HISTORY_COLUMNS))
-        self._file: TextIO = path.open("a", newline="")
+        # Without a buffer, from which a row that did not fit on the disk would be written again.
+        self._file = path.open("ab", buffering=0)
 
     def append(self, values: Mapping[str, float]) -> None:
         """Append one row; `values` holds exactly the declared columns.
@@ -71,22 +72,24 @@ class HistoryWriter:
         """
         if values.keys() != _TYPES.keys():
             raise ValueError(f"history row and declared columns differ in {sorted(values.keys() ^ _TYPES.keys())}")
-        self._file.write(_line(repr(kind(values[name])) for name, kind in _TYPES.items()))
-        self._file.flush()
+        row = memoryview(_line(repr(kind(values[name])) for name, kind in _TYPES.items()).encode())
+        while row:
+            row = row[self._file.write(row) :]
 
     def close(self) -> None:
         """Close the file."""
         self._file.close()
 
 
-def drop_rows_after(folder: Path, step: int) -> None:
-    """Remove the rows later than `step`, that of the checkpoint from which the run resumes.
+def keep_rows(folder: Path, rows: int) -> None:
+    """Remove all but the first rows, those of the checkpoint from which the run resumes.
 
-    Raises InputError if the history is missing or cannot be read.
+    Raises InputError if the history is missing.
     """
-    kept = int(np.count_nonzero(read_history(folder)["step"] <= step))
     path = folder / HISTORY_NAME
-    atomic.write_text(path, "".join(_complete_lines(path)[: 1 + kept]))
+    if not path.is_file():
+        raise InputError(f"{folder} holds no {HISTORY_NAME}")
+    atomic.write_text(path, "".join(_complete_lines(path)[: 1 + rows]))
 
 
 def read_history(folder: Path) -> NDArray[Any]:

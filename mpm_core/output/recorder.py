@@ -2,47 +2,40 @@
 
 from pathlib import Path
 
-from grainlaw.materials import InputError, atomic
-from grainlaw.mpm_core.output.checkpoint import CHECKPOINT_NAME, Clock, write_checkpoint
+from grainlaw.mpm_core.output.checkpoint import Clock, write_checkpoint
 from grainlaw.mpm_core.output.fields import make_frame
-from grainlaw.mpm_core.output.frame_series import COLLECTION_NAME, FrameSeries
-from grainlaw.mpm_core.output.history import HISTORY_NAME, HistoryWriter, drop_rows_after
+from grainlaw.mpm_core.output.frame_series import FrameSeries
+from grainlaw.mpm_core.output.history import HistoryWriter, read_history
 from grainlaw.mpm_core.output.observables import PileShape, pile_shape
-from grainlaw.mpm_core.output.quantities import QUANTITIES_NAME, write_quantities
-from grainlaw.mpm_core.output.run_folder import RunFolder
-from grainlaw.mpm_core.output.summary import SUMMARY_NAME
-from grainlaw.mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame, drop_after
+from grainlaw.mpm_core.output.quantities import write_quantities
+from grainlaw.mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame
+from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
 
-SCENE_NAME = "scene.toml"
 FRAMES_BY_DEFAULT = 30
 HISTORY_ROWS_BY_DEFAULT = 300
-OWN_FILES = (
-    SCENE_NAME,
-    VTKHDF_NAME,
-    CHECKPOINT_NAME,
-    COLLECTION_NAME,
-    HISTORY_NAME,
-    QUANTITIES_NAME,
-    SUMMARY_NAME,
-    "points_*.vtu",
-    "final.png",
-    "history.png",
-    "snapshots.png",
-)
+
+
+def frame_interval(scene: Scene) -> float:
+    """The time between frames [s]."""
+    return scene.output.interval or scene.time.end / FRAMES_BY_DEFAULT
+
+
+def history_interval(scene: Scene) -> float:
+    """The time between rows of the history [s]."""
+    return scene.output.history_interval or scene.time.end / HISTORY_ROWS_BY_DEFAULT
 
 
 class Recorder:
     """The open run folder of one simulation."""
 
     def __init__(self, folder: Path, simulation: Simulation, clock: Clock) -> None:
-        output, end = simulation.scene.output, simulation.scene.time.end
         self.folder = folder
         self.simulation = simulation
         self.clock = clock
-        self.frame_interval = output.interval or end / FRAMES_BY_DEFAULT
-        self.history_interval = output.history_interval or end / HISTORY_ROWS_BY_DEFAULT
-        self.series = FrameSeries(folder) if output.vtu else None
+        self.frame_interval = frame_interval(simulation.scene)
+        self.history_interval = history_interval(simulation.scene)
+        self.series = FrameSeries(folder) if simulation.scene.output.vtu else None
         self.history = HistoryWriter(folder)
         frame = make_frame(simulation.time, simulation.steps, simulation.bodies, simulation.fields)
         write_quantities(folder, frame.fields)
@@ -58,29 +51,38 @@ class Recorder:
         simulation = self.simulation
         return pile_shape(simulation.bodies, simulation.grid.lower[1], simulation.grid.cell_size)
 
-    def record(self, dt: float, wall_time: float) -> None:
-        """Write whatever is due after a step of `dt` [s]."""
+    def record(self, wall_time: float) -> None:
+        """Write whatever is due after a step."""
         simulation, clock = self.simulation, self.clock
         clock.wall_time = wall_time
-        at_end = simulation.time >= simulation.scene.time.end
-        if at_end or simulation.time >= clock.next_history * self.history_interval:
-            self._append_history(dt, wall_time)
+        if simulation.time >= clock.next_history * self.history_interval:
+            self._append_history()
             clock.next_history = int(simulation.time / self.history_interval) + 1
+            clock.history_rows += 1
         if simulation.time >= self.next_frame_time():
+            is_on_interval = simulation.time == clock.next_frame * self.frame_interval
             self._write_frame()
             clock.next_frame += 1
-            write_checkpoint(self.folder, simulation, clock)
+            # An end between two frames is no place to go on from: a longer run would not have stopped there.
+            if is_on_interval:
+                write_checkpoint(self.folder, simulation, clock)
+
+    def finish(self, wall_time: float) -> None:
+        """Write the row of the end, if none was due there."""
+        self.clock.wall_time = wall_time
+        if read_history(self.folder)["step"][-1] != self.simulation.steps:
+            self._append_history()
 
     def close(self) -> None:
         """Close the history."""
         self.history.close()
 
-    def _append_history(self, dt: float, wall_time: float) -> None:
+    def _append_history(self) -> None:
         shape, ledger, elastic = self.shape(), self.simulation.ledger, self.simulation.elastic_energy()
         self.history.append(
             {
                 "t": self.simulation.time,
-                "dt": dt,
+                "dt": self.simulation.last_step,
                 "runout": shape.runout,
                 "front_left": shape.front_left,
                 "front_right": shape.front_right,
@@ -96,7 +98,7 @@ class Recorder:
                 "numerical_dissipation": ledger.numerical_dissipation,
                 "points_asleep": sum(body.count - body.awake for body in self.simulation.bodies),
                 "step": self.simulation.steps,
-                "wall_time": wall_time,
+                "wall_time": self.clock.wall_time,
             }
         )
 
@@ -109,51 +111,3 @@ class Recorder:
             self.series.write(frame)
         if output.vtkhdf:
             append_frame(self.folder / VTKHDF_NAME, frame)
-
-
-def prepare_folder(folder: Path, scene_text: str, *, resume: bool, overwrite: bool) -> None:
-    """Make a folder ready for a run. Raises InputError where that would lose another run."""
-    scene_file = folder / SCENE_NAME
-    if resume:
-        if not scene_file.is_file():
-            raise InputError(f"{folder} holds no run to resume")
-        if scene_file.read_text(encoding="utf-8") != scene_text:
-            raise InputError(f"{folder} holds a run of another scene than the one to resume")
-        return
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"output folder {folder} is a file")
-    if any(any(folder.glob(pattern)) for pattern in OWN_FILES):
-        if not overwrite:
-            raise InputError(f"{folder} already holds a run; choose another --out, --resume it or --overwrite it")
-        for pattern in OWN_FILES:
-            for path in folder.glob(pattern):
-                path.unlink()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        atomic.write_text(scene_file, scene_text)
-    except OSError as error:
-        raise InputError(f"output folder {folder} cannot be written: {error.strerror}") from error
-
-
-def rewind(folder: Path, simulation: Simulation) -> None:
-    """Drop what was written after the checkpoint that the simulation was restored from."""
-    drop_rows_after(folder, simulation.steps)
-    if simulation.scene.output.vtu:
-        FrameSeries(folder).drop_after(simulation.time)
-    if simulation.scene.output.vtkhdf:
-        _rewind_vtkhdf(folder, simulation)
-
-
-def _rewind_vtkhdf(folder: Path, simulation: Simulation) -> None:
-    """Write run.vtkhdf anew from the VTU frames, or without them cut it: a killed run may have left it damaged."""
-    path = folder / VTKHDF_NAME
-    if simulation.scene.output.vtu:
-        path.unlink(missing_ok=True)
-        frames = RunFolder(folder)
-        for index in range(len(frames.frame_files)):
-            append_frame(path, frames.load_frame(index))
-        return
-    try:
-        drop_after(path, simulation.time)
-    except (OSError, KeyError) as error:
-        raise InputError(f"{path} was damaged when the run was stopped; --overwrite starts the run again") from error

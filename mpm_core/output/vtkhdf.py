@@ -5,9 +5,10 @@ fields of the steps lie one after the other; `Steps/PointOffsets` and `Steps/Poi
 begins. The vertices are the same at all steps and are stored once.
 
 A frame is appended in place, since writing a copy for each would cost the square of the number of frames. One chunk
-per step and array means that the data of earlier steps is never touched: a run that is killed while it appends leaves
-them readable. Only the last moment, when HDF5 puts the new index into the file, is not protected; a resumed
-run therefore writes the file anew from the VTU frames, which also drops the steps after the checkpoint.
+per step and array means that the data of earlier steps is never touched, and the new index is put into the file last:
+a run that is killed while it appends, or finds the disk full, leaves them readable. Only the moment in which the index
+is written is not protected; a resumed run therefore writes the file anew from the VTU frames, which also drops the
+steps after the checkpoint.
 """
 
 from pathlib import Path
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 
 from grainlaw.materials import atomic
 from grainlaw.mpm_core.output.frame import Frame
+from grainlaw.mpm_core.output.hdf5_file import changed_hdf5, new_hdf5
 
 VTKHDF_NAME = "run.vtkhdf"
 _CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
@@ -25,15 +27,17 @@ _STEPS_PER_CHUNK = 1024
 
 
 def append_frame(path: Path, frame: Frame) -> None:
-    """Append a frame to the file, which is created with its first frame; the number of points never changes."""
+    """Append a frame to the file, which is created with its first frame; the number of points never changes.
+
+    Raises OSError where the disk is full; the file is then as it was.
+    """
     if not path.exists():
-        with atomic.replacing(path) as partial, h5py.File(partial, "w", libver="earliest") as file:
+        with atomic.replacing(path) as partial, new_hdf5(partial, libver="earliest") as file:
             root = file.create_group("VTKHDF")
             _create_layout(root, frame)
             _append(root, frame)
         return
-    # A viewer that has the file open must not stop the run, so no lock is asked for.
-    with h5py.File(path, "r+", locking=False) as file:
+    with changed_hdf5(path) as file:
         _append(file["VTKHDF"], frame)
 
 
@@ -41,7 +45,7 @@ def drop_after(path: Path, time: float) -> None:
     """Cut off the frames later than `time` [s], that of the checkpoint from which the run resumes."""
     if not path.exists():
         return
-    with h5py.File(path, "r+", locking=False) as file:
+    with changed_hdf5(path) as file:
         root = file["VTKHDF"]
         steps = root["Steps"]
         kept = int(np.count_nonzero(steps["Values"][: int(steps.attrs["NSteps"])] <= time))

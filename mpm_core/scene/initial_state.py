@@ -1,6 +1,8 @@
 """Building the bodies of a scene: points, mass, stress and the law's state in equilibrium with it."""
 
+import math
 import warnings
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +18,8 @@ from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Sce
 from grainlaw.mpm_core.scene.shapes import lattice
 from grainlaw.mpm_core.stepping.peak_memory import physical_memory
 
+# Bulk density of grains [kg/m3]: expanded perlite and foam beads are about as light.
+LIGHTEST_PACKING = 100.0
 # At least, while a shape is filled: two copies of the coordinates.
 BYTES_PER_POINT = 32
 # Of stresses that may be stored in single precision.
@@ -25,7 +29,7 @@ STRESS_ROUND_OFF = 1e-6
 def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
     """The bodies of a scene, with or without a row for the shear strain.
 
-    Raises InputError for empty, overlapping or misplaced ones.
+    Raises InputError for empty, overlapping, misplaced or too dense ones.
     """
     bodies: list[Body] = []
     positions = [_positions(scene, number, section) for number, section in enumerate(scene.body)]
@@ -95,6 +99,7 @@ def _build(
 ) -> Body:
     law = scene.law(section.material)
     parameters = scene.parameters(section.material)
+    _check_density(law, parameters, section, name, scene.source)
     remainders = len(REMAINDERS) if scene.precision == "single" else 0
     rows = FIRST_STATE + len(law.state._fields) + keeps_shear_strain + remainders
     storage = allocate(rows, len(positions), scene.precision)
@@ -121,6 +126,23 @@ def _initial_stress(
         return horizontal, vertical, section.out_of_plane_ratio * (horizontal + vertical)
     nothing = np.zeros(len(vertical))
     return nothing, nothing, nothing
+
+
+def _check_density(law: Law, parameters: Any, section: BodySection, name: str, source: str) -> None:
+    """Raises InputError for a body denser than its grains, and warns about grains packed lighter than any are."""
+    grain_density = getattr(parameters, "grain_density", math.inf)
+    if section.density > grain_density:
+        raise InputError(
+            f"{name}.density = {section.density:g} kg/m3 is above the density of the grains, "
+            f"material.{section.material}.grain_density = {grain_density:g} kg/m3; allowed: up to that"
+        )
+    if section.density < LIGHTEST_PACKING and not law.carries_tension:
+        warnings.warn(
+            f"{source}: {name}.density = {section.density:g} kg/m3 is lighter than loose grains are; a density in "
+            f"g/cm3 is 1000 times that, {1000.0 * section.density:g}",
+            InputWarning,
+            stacklevel=2,
+        )
 
 
 def _warn_without_stiffness(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64], where: str) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from grainlaw.mpm_core.output.checkpoint import Clock
-from grainlaw.mpm_core.output.recorder import FRAMES_BY_DEFAULT, HISTORY_ROWS_BY_DEFAULT, Recorder
+from grainlaw.mpm_core.output.recorder import Recorder, frame_interval, history_interval
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.mpm_core.stepping.peak_memory import peak_memory
@@ -57,8 +57,7 @@ def plan(scene: Scene, threads: int = 1) -> Plan:
     stable = simulation.critical_time_step()
     step = scene.time.step or scene.time.safety * stable
     points = sum(body.count for body in simulation.bodies)
-    interval = scene.output.interval or scene.time.end / FRAMES_BY_DEFAULT
-    stops = math.ceil(scene.time.end / interval - 1e-9)
+    stops = math.ceil(scene.time.end / frame_interval(scene) - 1e-9)
     output_time = _output_time(simulation, stops + 1)
     seconds = _seconds_per_step(simulation)
     memory_bytes = peak_memory()
@@ -124,8 +123,7 @@ def _seconds_per_step(simulation: Simulation) -> float:
 
 def _output_time(simulation: Simulation, frames: int) -> float:
     """Wall time [s] of all frames with their checkpoints, and of all rows of the history."""
-    output, end = simulation.scene.output, simulation.scene.time.end
-    rows = end / (output.history_interval or end / HISTORY_ROWS_BY_DEFAULT)
+    rows = simulation.scene.time.end / history_interval(simulation.scene)
     with TemporaryDirectory() as folder:
         recorder = Recorder(Path(folder), simulation, Clock())
         durations = [_duration_of_record(recorder) for _ in range(2)]
@@ -139,5 +137,5 @@ def _output_time(simulation: Simulation, frames: int) -> float:
 def _duration_of_record(recorder: Recorder) -> float:
     recorder.clock = Clock()
     started = time.perf_counter()
-    recorder.record(0.0, 0.0)
+    recorder.record(0.0)
     return time.perf_counter() - started

@@ -1,18 +1,22 @@
 """The time loop: from a scene to a run's folder."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 
 from grainlaw.materials import InputError, SimulationError
 from grainlaw.mpm_core.output.bounded_points import limited
-from grainlaw.mpm_core.output.checkpoint import CHECKPOINT_NAME, Clock, read_checkpoint
-from grainlaw.mpm_core.output.recorder import Recorder, prepare_folder, rewind
-from grainlaw.mpm_core.output.summary import FinalState, RunSummary, write_summary
+from grainlaw.mpm_core.output.checkpoint import Clock, how_to_go_on, refuse_other_laws
+from grainlaw.mpm_core.output.folder_lock import held
+from grainlaw.mpm_core.output.prepare import go_on, new_folder
+from grainlaw.mpm_core.output.recorder import Recorder
+from grainlaw.mpm_core.output.summary import FinalState, RunSummary, read_summary, write_summary
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.mpm_core.stepping.peak_memory import peak_memory
+from grainlaw.mpm_core.stepping.resumed_scene import is_finished, resumed_scene
 
 Progress = Callable[[Simulation, float], None]
 
@@ -28,36 +32,64 @@ def run(
 ) -> RunSummary:
     """Run a scene and write its folder; `progress(simulation, dt)` is called after each step.
 
-    Raises InputError for what cannot be run or would overwrite a run, and SimulationError, naming the time, the point
-    and the last checkpoint, where the computation goes wrong.
+    A run that is resumed may have a later end than it had: it comes to the same bits as one that ran through.
+
+    Raises InputError for what cannot be run, would overwrite a run or is not the run to resume, and SimulationError,
+    naming the time, the point and the last checkpoint, where the computation goes wrong or the disk is full. A
+    KeyboardInterrupt gets a note of how to go on.
     """
     if resume and overwrite:
         choices = "--resume goes on with the run there, --overwrite begins it again; choose one"
         raise InputError(f"{folder}: {choices}")
     started = time.perf_counter()
+    if resume:
+        scene = resumed_scene(scene, folder)
+        if is_finished(scene, folder):
+            _draw(scene, folder)
+            return read_summary(folder)
+        refuse_other_laws(folder, [scene.law(body.material) for body in scene.body])
     simulation = built_simulation(scene, threads)
     _refuse_impossible_steps(simulation)
-    prepare_folder(folder, scene.to_toml(), resume=resume, overwrite=overwrite)
-    clock = Clock()
-    if resume:
-        clock = read_checkpoint(folder, simulation)
-        rewind(folder, simulation)
-    started -= clock.wall_time
+    text = scene.to_toml()
+    with held(folder) if resume else new_folder(folder, text, overwrite=overwrite), _stops_explained(folder):
+        clock = go_on(folder, simulation) if resume else Clock()
+        summary = _run(simulation, folder, clock, started - clock.wall_time, progress)
+        write_summary(folder, summary)
+        _draw(scene, folder)
+    return summary
+
+
+def _run(simulation: Simulation, folder: Path, clock: Clock, started: float, progress: Progress | None) -> RunSummary:
     recorder = Recorder(folder, simulation, clock)
     try:
         first_steps = _advance(simulation, recorder, started, progress)
-    except SimulationError as error:
-        raise SimulationError(f"{error}; last checkpoint: {folder / CHECKPOINT_NAME}") from error
+        recorder.finish(time.perf_counter() - started)
     finally:
         recorder.close()
     compile_time = simulation.build_time + max(0.0, first_steps)
-    summary = _summary(simulation, recorder, time.perf_counter() - started, compile_time)
-    write_summary(folder, summary)
+    return _summary(simulation, recorder, time.perf_counter() - started, compile_time)
+
+
+@contextmanager
+def _stops_explained(folder: Path) -> Iterator[None]:
+    """Say from where a run that is stopped can go on."""
+    try:
+        yield
+    except SimulationError as error:
+        raise SimulationError(f"{error}; {how_to_go_on(folder)}") from error
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise SimulationError(f"{folder} cannot be written: {reason}; {how_to_go_on(folder)}") from error
+    except KeyboardInterrupt as interrupt:
+        interrupt.add_note(f"stopped by Ctrl-C; {how_to_go_on(folder)}")
+        raise
+
+
+def _draw(scene: Scene, folder: Path) -> None:
     if scene.output.pictures and scene.output.vtu:
         from grainlaw.mpm_core.output.pictures import write_run_pictures
 
         write_run_pictures(folder)
-    return summary
 
 
 def built_simulation(scene: Scene, threads: int) -> Simulation:
@@ -75,14 +107,14 @@ def _advance(simulation: Simulation, recorder: Recorder, started: float, progres
     """Step to the end. Returns the wall time that the first step took longer than the second one [s]."""
     durations: list[float] = []
     if simulation.steps == 0:
-        recorder.record(0.0, time.perf_counter() - started)
+        recorder.record(time.perf_counter() - started)
     while simulation.time < simulation.scene.time.end:
         before = time.perf_counter()
         for dt in simulation.steps_to(recorder.next_frame_time()):
             now = time.perf_counter()
             if len(durations) < 2:
                 durations.append(now - before)
-            recorder.record(dt, now - started)
+            recorder.record(now - started)
             if progress is not None:
                 progress(simulation, dt)
             before = time.perf_counter()

@@ -18,6 +18,7 @@ from grainlaw.validation.grains.coarse_graining import (
     stress,
 )
 from grainlaw.validation.grains.observation import Observation
+from grainlaw.validation.grains.plausibility import check_geometry, check_grain_density
 from grainlaw.validation.grains.readers.run_folder import read_snapshots
 from grainlaw.validation.grains.run_description import RunDescription, read_run_description
 from grainlaw.validation.grains.snapshot import Array, GrainSnapshot, sphere_diameters
@@ -50,11 +51,20 @@ class Setting:
 
 def observe_folder(folder: Path) -> Observation:
     """The observation of a DEM run's folder. Raises InputError in one line for whatever is wrong in it."""
-    description = read_run_description(folder)
+    return observe_dumps(folder, read_run_description(folder))
+
+
+def observe_dumps(folder: Path, description: RunDescription, label: str = "") -> Observation:
+    """The observation of those dumps of a folder that a description names; `label` is what it calls itself.
+
+    Raises InputError in one line for whatever is wrong in them.
+    """
+    check_grain_density(description)
     snapshots = list(read_snapshots(folder, description))
-    return observe(
-        snapshots, setting_of(description, snapshots[0]), description.model_dump(mode="json", exclude={"frames"})
-    )
+    check_geometry(snapshots, description)
+    provenance = description.model_dump(mode="json", exclude={"frames"})
+    setting = setting_of(description, snapshots[0])
+    return observe(snapshots, setting, {"label": label, **provenance} if label else provenance)
 
 
 def setting_of(description: RunDescription, first: GrainSnapshot) -> Setting:

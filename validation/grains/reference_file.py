@@ -4,8 +4,7 @@ from pathlib import Path
 
 from grainlaw.materials import InputError
 from grainlaw.validation.grains.observation import Observation, is_observation, read_observation
-from grainlaw.validation.grains.observe import observe, observe_folder, setting_of
-from grainlaw.validation.grains.readers.run_folder import read_snapshots
+from grainlaw.validation.grains.observe import observe_dumps, observe_folder
 from grainlaw.validation.grains.run_description import RUN_DESCRIPTION_NAME, read_run_description
 from grainlaw.validation.grains.surface_table import is_surface_table, read_surface_table
 
@@ -33,6 +32,4 @@ def load_reference(path: Path, grain_diameter: float | None = None) -> Observati
             "beside it, with depth and grain_density"
         )
     description = read_run_description(path.parent).model_copy(update={"frames": None, "grains_files": path.name})
-    snapshots = list(read_snapshots(path.parent, description))
-    provenance = description.model_dump(mode="json", exclude={"frames"})
-    return observe(snapshots, setting_of(description, snapshots[0]), {"label": path.stem, **provenance})
+    return observe_dumps(path.parent, description, path.stem)

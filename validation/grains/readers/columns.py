@@ -16,6 +16,7 @@ ALIASES = {
     "radii": "radius",
     "diam": "diameter",
     "mask": "type",
+    "rho": "density",
     "Time": "time",
 }
 VECTORS = {"Points": ("x", "y", "z")} | dict.fromkeys(("v", "vel", "velocity", "linVel"), ("vx", "vy", "vz"))

@@ -45,7 +45,7 @@ class Reader(Protocol):
 
 def snapshot_of(frame: RawFrame, time: float, mobile_types: tuple[int, ...] | None) -> GrainSnapshot:
     """The grains of a frame that count. Raises InputError for missing columns, bad numbers or wrong units."""
-    columns = _mobile(frame, mobile_types)
+    columns = mobile_columns(frame, mobile_types)
     positions = np.column_stack([_column(frame.path, columns, name) for name in "xyz"])
     radii = _column(frame.path, columns, "radius")
     if len(radii) == 0:
@@ -73,10 +73,11 @@ def snapshot_of(frame: RawFrame, time: float, mobile_types: tuple[int, ...] | No
 
 def mobile_count(frame: RawFrame, mobile_types: tuple[int, ...] | None) -> int:
     """Number of grains of a frame that count."""
-    return len(_column(frame.path, _mobile(frame, mobile_types), "x"))
+    return len(_column(frame.path, mobile_columns(frame, mobile_types), "x"))
 
 
-def _mobile(frame: RawFrame, mobile_types: tuple[int, ...] | None) -> dict[str, Array]:
+def mobile_columns(frame: RawFrame, mobile_types: tuple[int, ...] | None) -> dict[str, Array]:
+    """The columns of the grains that count. Raises InputError where several types do not say which."""
     if "type" not in frame.columns:
         return frame.columns
     types = frame.columns["type"]

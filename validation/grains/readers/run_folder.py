@@ -6,9 +6,10 @@ from pathlib import Path
 
 from grainlaw.materials import InputError
 from grainlaw.validation.grains.love_weber import stress_of_contacts
+from grainlaw.validation.grains.plausibility import check_density_of_grains
 from grainlaw.validation.grains.readers import hdf5_grains, liggghts, mercury, text_table, vtk_points
 from grainlaw.validation.grains.readers.contacts import read_contacts
-from grainlaw.validation.grains.readers.raw_frame import RawFrame, Reader, mobile_count, snapshot_of
+from grainlaw.validation.grains.readers.raw_frame import RawFrame, Reader, mobile_columns, mobile_count, snapshot_of
 from grainlaw.validation.grains.readers.text_file import read_start, unpacked_name
 from grainlaw.validation.grains.run_description import RUN_DESCRIPTION_NAME, RunDescription
 from grainlaw.validation.grains.snapshot import GrainSnapshot
@@ -57,7 +58,9 @@ def snapshots_of(frames: Sequence[RawFrame], description: RunDescription) -> Ite
     first: GrainSnapshot | None = None
     for time, frame in _since_release(frames, description):
         snapshot = snapshot_of(frame, time, description.mobile_types)
-        first = first or snapshot
+        if first is None:
+            _check_density(frame, snapshot, description)
+            first = snapshot
         if snapshot.count != first.count:
             _check_lost(frame, snapshot, first)
         if frame.contacts is not None:
@@ -86,6 +89,14 @@ def _since_release(frames: Sequence[RawFrame], description: RunDescription) -> l
         column, first = (mobile_count(entry[1], description.mobile_types) for entry in (before[-1], after[0]))
         after = before[-1:] + after if column == first else after
     return after
+
+
+def _check_density(frame: RawFrame, snapshot: GrainSnapshot, description: RunDescription) -> None:
+    """Raises InputError where the frame tells densities or masses that are not those of the description."""
+    columns = mobile_columns(frame, description.mobile_types)
+    density = columns["mass"] / snapshot.solid_volumes if "mass" in columns else columns.get("density")
+    if density is not None:
+        check_density_of_grains(frame.path, density, description.grain_density)
 
 
 def _check_lost(frame: RawFrame, snapshot: GrainSnapshot, first: GrainSnapshot) -> None:
