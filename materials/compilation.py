@@ -113,6 +113,7 @@ class PointwiseLaw:
     sound_speed: Callable[..., Any]
     small_step: Callable[..., Any] | None
     stored_energy: Callable[..., Any] | None
+    viscosity: Callable[..., Any] | None
     mark: str
 
 
@@ -170,6 +171,7 @@ def pointwise_law(law: Law, precision: str = "double") -> PointwiseLaw:
         sound_speed=register(law.sound_speed),
         small_step=register(law.small_step) if law.small_step is not None else None,
         stored_energy=_register_marked(law.stored_energy) if law.stored_energy is not None else None,
+        viscosity=_register_marked(law.viscosity) if law.viscosity is not None and law.viscosity_bounds_step else None,
         mark=f"{law.name}_{precision}_{mark_of_reached(parts)}",
     )
 

@@ -71,6 +71,8 @@ class Law:
                     by a law whose stress follows the rate of strain itself. Its `sound_speed` is that of waves at a
                     constant rate; its viscosity bounds an explicit step besides, to about rho h^2/(2 viscosity) on
                     cells of h. Since hook version 2
+    viscosity_bounds_step  whether the core keeps to that bound; False where friction bounds the viscous stress, which
+                    at larger steps changes sign from step to step but does not grow (version 2)
     stored_energy   (stress, density, state, parameters) -> elastic energy per mass [J/kg], zero without stress; with it
                     the ledger of a run tells elastic from dissipated work; None if the law does not know it (version 2)
     lower_bounds    by the names of state variables that the law does not let fall lower, such as the size of a yield
@@ -103,6 +105,7 @@ class Law:
     carries_tension: bool = False
     hook_version: int = HOOK_VERSION
     viscosity: Callable[[SymmetricTensor, SymmetricTensor, float, Any, Any], float] | None = None
+    viscosity_bounds_step: bool = True
     stored_energy: Callable[[SymmetricTensor, float, Any, Any], float] | None = None
     lower_bounds: Mapping[str, Callable[[Any], float]] = field(default_factory=dict)
     small_step: (

@@ -36,7 +36,7 @@ def failure_unsound(when: str, body: Body, dt: float) -> SimulationError:
     increments = dt * strain_rates(body)
     worst = int(np.argmax(increments))
     if increments[worst] < LARGEST_INCREMENT:
-        return failure_at(when, body, worst, "the law's sound speed is not finite")
+        return failure_at(when, body, worst, "the law's sound speed or viscosity is not finite")
     return failure_at(when, body, worst, f"its volume changed by {increments[worst]:.0%} in one step of {dt:.3g} s")
 
 

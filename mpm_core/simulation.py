@@ -31,6 +31,7 @@ from grainlaw.mpm_core.stepping.sleeping import STEPS_PER_LOOK, Sleep
 from grainlaw.mpm_core.stepping.time_step import (
     LARGEST_STRAIN,
     SMALLEST_SHARE,
+    largest_diffusivity,
     signal_bounds,
     strain_rates,
 )
@@ -89,7 +90,7 @@ class Simulation:
         return [(body.largest_signal_speed(), float(np.hypot(*body.velocity).max())) for body in self.bodies]
 
     def _take_signals(self, signals: list[tuple[float, float]]) -> None:
-        self.signal_speed = self._signal_speed(signals)
+        self.signal_speed = self._signal_speed(signals, [largest_diffusivity(body) for body in self.bodies])
         self.strain_rate = max(float(strain_rates(body).max()) for body in self.bodies)
 
     def step(self, dt: float) -> None:
@@ -192,10 +193,14 @@ class Simulation:
         stable = self.scene.time.safety * self.critical_time_step()
         return min(stable, LARGEST_STRAIN / self.strain_rate) if self.strain_rate > 0.0 else stable
 
-    def _signal_speed(self, reported: list[tuple[float, float]]) -> float:
-        """The speed [m/s] that bounds the step, from the fastest signal and the fastest point of each body."""
-        pairs = zip(self.signal_bounds, reported, strict=True)
-        return max(self.free_fall_speed, *(bounds.speed(*found) for bounds, found in pairs))
+    def _signal_speed(self, reported: list[tuple[float, float]], diffusivities: list[float]) -> float:
+        """The speed [m/s] that bounds the step.
+
+        From the fastest signal and the fastest point of each body, and its largest viscosity over density [m2/s].
+        """
+        found = zip(self.signal_bounds, reported, diffusivities, strict=True)
+        speeds = (bounds.speed(*pair, nu / self.grid.cell_size) for bounds, pair, nu in found)
+        return max(self.free_fall_speed, *speeds)
 
     def elastic_energy(self) -> float:
         """The present elastic energy of all bodies per width [J/m]; NaN where a law does not state its energy."""
@@ -259,7 +264,8 @@ class Simulation:
     def _take_reports(self, dt: float) -> None:
         reports = [step_report(body.transfer_reports, body.stress_reports) for body in self.bodies]
         for body, report in zip(self.bodies, reports, strict=True):
-            if not (report.increment < LARGEST_INCREMENT and report.signal_speed < math.inf):
+            is_finite = report.signal_speed < math.inf and report.diffusivity < math.inf
+            if not (report.increment < LARGEST_INCREMENT and is_finite):
                 raise failure_unsound(self._when, body, dt)
         whole = together(reports)
         self._refuse_lost_points(whole)
@@ -269,7 +275,7 @@ class Simulation:
             (max(report.signal_speed, body.signal_speed_asleep), report.fastest)
             for body, report in zip(self.bodies, reports, strict=True)
         ]
-        self.signal_speed = self._signal_speed(signals)
+        self.signal_speed = self._signal_speed(signals, [report.diffusivity for report in reports])
         gravity_x, gravity_y = self.scene.gravity
         self.ledger.count(
             kinetic=whole.kinetic,

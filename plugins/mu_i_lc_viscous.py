@@ -8,9 +8,9 @@ The printed Eq. 5 lacks d_p in the numerator and has d_p gamma_dot under the roo
 viscosity and returns Eqs. 2 and 4 at alpha = 0.
 
 Step limit. `sound_speed` covers waves alone. `viscosity` bounds an explicit step too, to about 3/4 rho h^2/eta on cells
-of h, and near rest eta ~ mu_0 p/alpha: far below any step that a run can afford. The stress of slow points then
-chatters between the signs of the yield stress and a pile creeps for ever: this law is here to be compared with,
-`mu_i_lc` is the one to use.
+of h, and near rest eta ~ mu_0 p/alpha: far below any step that a run can afford, so that runs do not keep to it. The
+stress of slow points then chatters between the signs of the yield stress and a pile creeps for ever: this law is here
+to be compared with, `mu_i_lc` is the one to use.
 
 Source: paper = "A comparative study of granular solid-like and fluid-like constitutive laws", EPJ
 Web of Conferences 340, 02014 (2025), doi 10.1051/epjconf/202534002014, Eqs. 1-6, Table 1;
@@ -150,6 +150,7 @@ LAW = Law(
     sound_speed=sound_speed,
     stored_energy=stored_energy,
     viscosity=viscosity,
+    viscosity_bounds_step=False,
     holds_in_single=True,
     inconsistency=inconsistency,
     parameter_sets={

@@ -7,8 +7,8 @@ In simple shear v_x = k y the shear stress is eta k, the usual definition of vis
 rho_0 follows for each point from its initial pressure and density, so that the initial state is in equilibrium. A fluid
 that is to carry suction, as between moving walls, starts under a pressure that keeps it above rho_0.
 
-Step limit. `sound_speed` covers waves alone. An explicit step is also bound by `viscosity`, to about 3/8 rho h^2/eta on
-cells of h; where that is the smaller one, set the scene's `time.step`.
+Step limit. `sound_speed` covers waves alone. An explicit step is also bound by `viscosity`, to 3/16 rho h^2/eta on
+cells of h where waves are slow; runs keep to it.
 
 Source: Batchelor (1967), An Introduction to Fluid Dynamics, section 3.3, without volume viscosity; p is linear in rho.
 Conventions: tensors tension-positive, p compression-positive.

@@ -51,6 +51,47 @@ def test_the_grid_is_stiffer_than_a_wave_by_what_the_law_says():
     assert signal_bounds(newtonian, newtonian.parameters(1.0, 1e5), 1000.0).wave_factor == pytest.approx(2.0**0.5)
 
 
+def oscillation(viscosity, bulk_modulus, share, steps=40):
+    """By how much the shear of a single point of fluid under pressure grows over steps of a share of the stable one."""
+    case = simulation(
+        BLOCK,
+        {
+            "material": {"newtonian": {"viscosity": viscosity, "bulk_modulus": bulk_modulus}},
+            "body.0.material": "newtonian",
+            "body.0.points_per_cell": 1,
+            "body.0.shape": {"kind": "rectangle", "lower": [0.4, 0.4], "upper": [0.5, 0.5]},
+            "body.0.initial_stress": {"kind": "uniform", "pressure": 1e-3 * bulk_modulus},
+            "transfer.time_constant": 1e6,
+        },
+    )
+    case.bodies[0].velocity_gradient = case.bodies[0].affine = 1e-2 * np.array([[0.0, 1.0], [1.0, 0.0]])[:, :, None]
+    case.step(1e-12)
+    energies = []
+    for _ in range(steps):
+        case.step(share * case.critical_time_step())
+        energies.append(case.ledger.kinetic)
+    return energies[-1] / energies[0]
+
+
+def test_a_viscosity_bounds_the_step():
+    """Of a fluid without volume viscosity, the limit of a point is 4/3 of the stable step of a grid."""
+    assert oscillation(1e4, 1e2, 0.99) < 1.0
+    assert oscillation(1e4, 1e2, 1.5) > 1e4
+
+
+def test_a_law_may_say_that_its_viscosity_bounds_no_step():
+    """Near rest mu_i_lc_viscous would ask for steps of rho h^2 alpha/(mu_0 p)."""
+    law = get_material("mu_i_lc_viscous")
+    parameters = law.parameter_sets["paper"].parameters
+    changes = {
+        "material": {law.name: parameters._asdict()},
+        "body.0.material": law.name,
+        "body.0.initial_stress": {"kind": "uniform", "pressure": 1e3},
+    }
+    speed = simulation(BLOCK, changes).signal_speed
+    assert speed < 2.0 * (parameters.bulk_modulus / 1000.0) ** 0.5
+
+
 def cloud(speed, changes=None):
     """A stress-free block of Cam Clay that closes in on its centre."""
     case = simulation(

@@ -218,6 +218,32 @@ def make_largest_signal_speed(law: PointwiseLaw, mark: str) -> Callable[..., Any
     return in_precision(largest_signal_speed, law.precision)
 
 
+def make_largest_diffusivity(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
+    """The largest viscosity over density of some points [m2/s], as ordered bits; zero for a law without one."""
+    if law.viscosity is None:
+        return no_diffusivity
+    viscosity, parameter_class = law.viscosity, law.parameters
+    (stress_at, strain_rate_at), (load, _) = point_access("double"), make_state_access(law.state, mark)
+
+    @register_jitable
+    @named(mark)
+    def largest_diffusivity(rows, first, last, parameters, dt):  # type: ignore[no-untyped-def]
+        law_parameters, largest = parameter_class(*parameters), np.int64(0)
+        for p in range(first, last):
+            density, strain_rate = np.float64(rows[DENSITY][p]), strain_rate_at(rows, p, 0.0, dt)
+            found = viscosity(stress_at(rows, p), strain_rate, density, load(rows, p), law_parameters)
+            largest = max(largest, ordered_bits(found / density))
+        return largest
+
+    return largest_diffusivity
+
+
+@register_jitable
+def no_diffusivity(rows, first, last, parameters, dt):  # type: ignore[no-untyped-def]
+    """Nothing diffuses."""
+    return np.int64(0)
+
+
 def make_find_stiffness(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
     """The stiffness rho c^2 of some points [Pa]."""
     sound_speed, parameter_class, number = law.sound_speed, law.parameters, PRECISIONS[law.precision]

@@ -19,7 +19,12 @@ from grainlaw.mpm_core.kernels.g2p import (
     MOMENTUM_Y,
 )
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
-from grainlaw.mpm_core.kernels.stress_update import INTERNAL_WORK, MAX_INCREMENT, MAX_SIGNAL_SPEED
+from grainlaw.mpm_core.kernels.stress_update import (
+    INTERNAL_WORK,
+    MAX_DIFFUSIVITY,
+    MAX_INCREMENT,
+    MAX_SIGNAL_SPEED,
+)
 
 
 class StepReport(NamedTuple):
@@ -32,6 +37,7 @@ class StepReport(NamedTuple):
     fastest                 speed at which a point moved [m/s]
     signal_speed            largest sum of sound speed and speed [m/s]
     increment               largest volumetric strain of the motion [1]; NaN if anything is not finite
+    diffusivity             largest viscosity over density [m2/s]
     """
 
     lowest_x: float
@@ -45,10 +51,11 @@ class StepReport(NamedTuple):
     fastest: float
     signal_speed: float
     increment: float
+    diffusivity: float
 
 
 # A body of which nothing is awake.
-_NOTHING = StepReport(math.inf, -math.inf, math.inf, -math.inf, *([0.0] * 7))
+_NOTHING = StepReport(math.inf, -math.inf, math.inf, -math.inf, *([0.0] * 8))
 
 
 def step_report(transfer: NDArray[np.float64], stress: NDArray[np.float64]) -> StepReport:
@@ -75,20 +82,23 @@ def together(reports: list[StepReport]) -> StepReport:
         fastest=max(each.fastest),
         signal_speed=max(each.signal_speed),
         increment=max(each.increment),
+        diffusivity=max(each.diffusivity),
     )
 
 
 @njit(cache=True)
 @named(CORE_MARK)
 def _combined(transfer, stress):  # type: ignore[no-untyped-def]
-    increment, signal_speed = 0.0, 0.0
+    increment, signal_speed, diffusivity = 0.0, 0.0, 0.0
     for block in range(len(stress)):
         # not less, rather than greater: NaN has to come through
         if not stress[block, MAX_INCREMENT] <= increment:
             increment = stress[block, MAX_INCREMENT]
         if not stress[block, MAX_SIGNAL_SPEED] <= signal_speed:
             signal_speed = stress[block, MAX_SIGNAL_SPEED]
-        if np.isnan(increment) or np.isnan(signal_speed):
+        if not stress[block, MAX_DIFFUSIVITY] <= diffusivity:
+            diffusivity = stress[block, MAX_DIFFUSIVITY]
+        if np.isnan(increment) or np.isnan(signal_speed) or np.isnan(diffusivity):
             break
     return (
         transfer[:, LOWEST_X].min(),
@@ -102,4 +112,5 @@ def _combined(transfer, stress):  # type: ignore[no-untyped-def]
         transfer[:, MAX_SPEED].max(),
         signal_speed,
         increment,
+        diffusivity,
     )

@@ -22,6 +22,7 @@ from grainlaw.materials.tensor import THIRD, SymmetricTensor, shear_strain_rate,
 from grainlaw.mpm_core.kernels.law_at_points import (
     make_apply_law,
     make_find_stiffness,
+    make_largest_diffusivity,
     make_largest_signal_speed,
     ordered_bits,
 )
@@ -57,8 +58,8 @@ from grainlaw.mpm_core.parallel.work_sharing import chunk_ranges, next_chunk, th
 GROUP = 512
 
 # What `stress_pass` reports for each block of points.
-MAX_SIGNAL_SPEED, INTERNAL_WORK, MAX_INCREMENT = range(3)
-REPORTS = 3
+MAX_SIGNAL_SPEED, INTERNAL_WORK, MAX_INCREMENT, MAX_DIFFUSIVITY = range(4)
+REPORTS = 4
 
 
 @adaptable
@@ -192,12 +193,15 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str
 
     It couples the volumes of the points for a time `coupled_time` [s], zero for not in this step; `exchange` is that
     time over the FLIP blend time. Reports per block of points: the largest signal speed c + |v| [m/s], the work of the
-    stress on the strain [J/m], and the largest volumetric strain increment of the motion. Where anything is not finite,
-    the last one is NaN.
+    stress on the strain [J/m], the largest volumetric strain increment of the motion, NaN where anything is not finite,
+    and the largest viscosity over density [m2/s].
     """
     mark, number = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}_{precision}", PRECISIONS[precision]
     apply_law, find_stiffness = make_apply_law(law, mark), make_find_stiffness(law, mark)
-    largest_signal_speed = make_largest_signal_speed(law, mark)
+    largest_signal_speed, largest_diffusivity = (
+        make_largest_signal_speed(law, mark),
+        make_largest_diffusivity(law, mark),
+    )
     after_state = FIRST_STATE + len(law.state._fields)
     all_rows = (0.0,) * (after_state + keeps_shear_strain)
     shear_strain = make_accumulate_shear_strain(after_state if keeps_shear_strain else None, mark)
@@ -216,7 +220,7 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str
             coupling, stiffness, buffers = arrays[0], arrays[1], (arrays[1], arrays[2])
             block = next_chunk(ranges, thread)
             while block >= 0:
-                fastest, largest, work = np.int64(0), np.int64(0), 0.0
+                fastest, largest, diffusivity, work = np.int64(0), np.int64(0), np.int64(0), 0.0
                 begin, end = points_of_block(block, reports.shape[0], count)
                 for start in range(begin, end, GROUP):
                     first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
@@ -227,11 +231,13 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str
                     increment = forward(rows, first, last, step, coupling, buffers, density_remainder(storage))
                     apply_law(rows, first, last, coupling, parameters, dt)
                     speed = largest_signal_speed(rows, first, last, parameters)
+                    diffusivity = max(diffusivity, largest_diffusivity(rows, first, last, parameters, dt))
                     work += work_done(rows, first, last, buffers)
                     fastest, largest = max(fastest, speed), max(largest, increment)
                 reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
                 reports[block, INTERNAL_WORK] = point_mass * dt * work
                 reports[block, MAX_INCREMENT] = np.int64(largest).view(np.float64)
+                reports[block, MAX_DIFFUSIVITY] = np.int64(diffusivity).view(np.float64)
                 block = next_chunk(ranges, thread)
 
     return stress_pass

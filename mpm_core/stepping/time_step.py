@@ -11,6 +11,12 @@ strains e in the plane, so that
 C exceeds rho c^2, which waves feel: against in-plane dilation it is 2 K + 2/3 G, for a fluid twice rho c^2. The ratio
 is taken from the law once. Cubic splines (D = h^2/3) have room to spare.
 
+Viscosity. A stress that follows the rate of strain damps an oscillation at a rate lambda = C'/(rho D), with the largest
+viscosity C' = e:d(sigma)/d(rate of eps):e, at most twice the viscosity nu rho against plane waves. Such a stress is of
+the velocities before the step: stable while (omega dt)^2 + 2 lambda dt <= 4, or dt <= h/S with
+
+    S = 2 nu/h + sqrt((2 nu/h)^2 + C/rho).
+
 Contact. A law whose stiffness comes with pressure has none where the point is open. What it will have when a step has
 closed the gap and compressed it by `LARGEST_STRAIN` counts from the start.
 
@@ -28,7 +34,7 @@ from numpy.typing import NDArray
 from grainlaw.materials.law import Law
 from grainlaw.materials.tensor import SymmetricTensor, contraction, isotropic, scaled, trace
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, SZZ
+from grainlaw.mpm_core.layout import DENSITY, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ
 
 # Of volume, in one adaptive step.
 LARGEST_STRAIN = 0.02
@@ -38,7 +44,7 @@ SMALLEST_SHARE = 1e-4
 _PROBE_STRAIN, _PROBE_DURATION = 1e-6, 1e-3
 _DILATION = SymmetricTensor(math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0, 0.0, 0.0)
 _SHEAR = SymmetricTensor(math.sqrt(0.5), -math.sqrt(0.5), 0.0, 0.0, 0.0, 0.0)
-# No isotropic elasticity is stiffer in the plane than a fluid, in terms of its rho c^2.
+# No isotropic elasticity is stiffer in the plane than a fluid, in terms of its rho c^2; the same holds of viscosities.
 _LARGEST_STIFFNESS_RATIO = 2.0
 
 
@@ -60,9 +66,14 @@ class SignalBounds(NamedTuple):
     wave_factor: float
     contact_speed: float
 
-    def speed(self, reported: float, fastest_point: float) -> float:
-        """The signal speed [m/s] that bounds the step, from the largest c + |v| and the largest |v| of the points."""
-        return self.wave_factor * max(reported, fastest_point + self.contact_speed)
+    def speed(self, reported: float, fastest_point: float, viscous_speed: float) -> float:
+        """The signal speed [m/s] that bounds the step.
+
+        From the largest c + |v| and the largest |v| of the points, and their largest nu/h.
+        """
+        waves = self.wave_factor * max(reported, fastest_point + self.contact_speed)
+        diffusion = _LARGEST_STIFFNESS_RATIO * viscous_speed
+        return diffusion + math.hypot(diffusion, waves) if diffusion > 0.0 else waves
 
 
 def signal_bounds(law: Law, parameters: Any, density: float) -> SignalBounds:
@@ -99,7 +110,9 @@ def what_sets_the_step(body: Body, reason: Callable[[Body], NDArray[np.float64]]
     """The point where a reason for small steps is strongest, and what it contributes to the bounds, in words."""
     point = int(np.argmax(reason(body)))
     sound, speed, rate = sound_speeds(body)[point], np.hypot(*body.velocity)[point], strain_rates(body)[point]
-    return point, f"sound speed {sound:.3g} m/s, speed {speed:.3g} m/s, volumetric strain rate {rate:.3g} 1/s"
+    words = f"sound speed {sound:.3g} m/s, speed {speed:.3g} m/s, volumetric strain rate {rate:.3g} 1/s"
+    diffusivity = largest_diffusivity(body)
+    return point, words + (f", viscosity over density up to {diffusivity:.3g} m2/s" if diffusivity > 0.0 else "")
 
 
 def strain_rates(body: Body) -> NDArray[np.float64]:
@@ -122,3 +135,16 @@ def sound_speeds(body: Body) -> NDArray[np.float64]:
         stress = SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0)
         found[point] = body.law.sound_speed(stress, density, body.law.state(*state), body.parameters)
     return found
+
+
+def largest_diffusivity(body: Body) -> float:
+    """The largest viscosity over density of the points [m2/s], in plain Python; zero for a law without viscosity."""
+    law, largest = body.law, 0.0
+    if law.viscosity is None or not law.viscosity_bounds_step:
+        return largest
+    rows = np.vstack([body.points[[SXX, SYY, SZZ, SXY, DENSITY, LXX, LYY, LXY, LYX]], body.states])
+    for xx, yy, zz, xy, density, lxx, lyy, lxy, lyx, *state in np.unique(rows, axis=1).T.tolist():
+        stress = SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0)
+        rate = SymmetricTensor(lxx, lyy, 0.0, 0.5 * (lxy + lyx), 0.0, 0.0)
+        largest = max(largest, law.viscosity(stress, rate, density, law.state(*state), body.parameters) / density)
+    return largest
