@@ -17,35 +17,49 @@ REFRESH_INTERVAL = 0.2
 LINE_INTERVAL = 10.0
 
 
+# Of a bar, so that a line fits on 80 columns.
+BAR_WIDTH = 16
+COMPILING = "compiling, once per law"
+
+
 @contextmanager
-def shown_progress(end: float) -> "Iterator[Callback | None]":
+def shown_progress(end: float, lines_otherwise: bool = False) -> "Iterator[Callback | None]":
     """A callback for `grainlaw.mpm_core.stepping.run.run` that shows the simulated time up to `end` [s].
 
-    None where there is neither a notebook nor a terminal to show it on.
+    Where there is neither a notebook nor a terminal to show a bar on, None, or with `lines_otherwise` a callback that
+    writes a line to stderr now and then. All say when kernels have to be compiled first.
     """
+    from grainlaw.mpm_core.stepping.compilation import noticed_compilation
+
     console = Console(stderr=True)
     if _in_notebook():
         shown = _notebook_bar()
-        yield _every(REFRESH_INTERVAL, lambda s, dt: shown(s.time / end, _state(s, dt)))
+        with noticed_compilation(lambda: shown(0.0, COMPILING)):
+            yield _every(REFRESH_INTERVAL, lambda s, dt: shown(s.time / end, _state(s, dt)))
         shown(1.0, "")
     elif console.is_terminal:
-        with _bar(console) as bar:
+        with progress_bar(console) as bar:
             task = bar.add_task("", total=end, state="")
-            yield _every(REFRESH_INTERVAL, lambda s, dt: bar.update(task, completed=s.time, state=_state(s, dt)))
+            with noticed_compilation(lambda: bar.update(task, state=COMPILING)):
+                yield _every(REFRESH_INTERVAL, lambda s, dt: bar.update(task, completed=s.time, state=_state(s, dt)))
             bar.update(task, completed=end)
+    elif lines_otherwise:
+        with noticed_compilation(say_that_it_compiles):
+            yield _every(LINE_INTERVAL, lambda s, dt: print(_line(s, dt, end), file=sys.stderr))
     else:
         yield None
 
 
-def lines(end: float) -> "Callback":
-    """A callback that writes a line to stderr now and then."""
-    return _every(LINE_INTERVAL, lambda s, dt: print(f"{_state(s, dt)}, {s.time / end:.0%}", file=sys.stderr))
+def say_that_it_compiles() -> None:
+    """One line for those who wait."""
+    print("compiling kernels; the next run with these laws finds them on disk", file=sys.stderr)
 
 
-def _bar(console: Console) -> Progress:
+def progress_bar(console: Console) -> Progress:
+    """A bar with what has passed, what is left and the field `state` of its task."""
     return Progress(
         TextColumn("{task.percentage:3.0f} %"),
-        BarColumn(),
+        BarColumn(bar_width=BAR_WIDTH),
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),
@@ -79,7 +93,12 @@ def _notebook_bar() -> Any:
 
 
 def _state(simulation: "Simulation", dt: float) -> str:
-    return f"t = {simulation.time:.4g} s, dt = {dt:.3g} s, kinetic energy {simulation.ledger.kinetic:.3g} J/m"
+    return f"t = {simulation.time:.4g} s, dt = {dt:.2g} s"
+
+
+def _line(simulation: "Simulation", dt: float, end: float) -> str:
+    kinetic = f"kinetic energy {simulation.ledger.kinetic:.3g} J/m"
+    return f"{_state(simulation, dt)}, {kinetic}, {simulation.time / end:.0%}"
 
 
 def _every(interval: float, report: "Callback") -> "Callback":

@@ -19,5 +19,13 @@ def installation(tmp_path_factory) -> Installation:
     return installed_once(shared / "installation")
 
 
+@pytest.fixture(scope="session", autouse=True)
+def silent_compilation():
+    """Whether kernels are on disk already is no matter of most tests, which read what commands say on stderr."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("grainlaw.progress.say_that_it_compiles", lambda: None)
+        yield
+
+
 def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: FIRST.index(name) if (name := Path(item.path).name) in FIRST else len(FIRST))

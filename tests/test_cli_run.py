@@ -1,5 +1,7 @@
 """`grainlaw run`, `plan` and `compare`: what they print and write, and what they refuse."""
 
+import errno
+import os
 import re
 import subprocess
 import sys
@@ -29,7 +31,9 @@ def test_run_writes_its_folder_says_where_and_leaves_stderr_to_progress(tmp_path
     printed = capsys.readouterr()
     assert all(line.startswith("t = ") for line in printed.err.splitlines())
     assert re.match(
-        r"column: t = 0\.2 s, 1536 points, \d+ steps in \S+ s \(\S+ million point-steps/s on 1 thread\)", printed.out
+        r"column: t = 0\.2 s, 1536 points, \d+ steps in \S+ s, of which \S+ s to compile or load "
+        r"kernels \(\S+ million point-steps/s on 1 thread\)",
+        printed.out,
     )
     summary = RunFolder(tmp_path / "out").summary
     assert f"runout {summary.final.runout:.4f} m, height {summary.final.height:.4f} m" in printed.out
@@ -84,6 +88,15 @@ def test_more_threads_than_cores_are_refused(tmp_path, monkeypatch, capsys):
     assert call_command_line(monkeypatch, "run", path, "--out", tmp_path / "out", "--threads", 4096) == 2
     assert re.search(r"threads = 4096: this machine has (\d+); allowed: 1 to \1\n", capsys.readouterr().err)
     assert not (tmp_path / "out").exists()
+
+
+def test_a_disk_that_is_full_for_any_command_is_one_line(monkeypatch, capsys):
+    def full():
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "history.csv")
+
+    monkeypatch.setattr("grainlaw.cli.main.app", full)
+    assert call_command_line(monkeypatch, "element") == 1
+    assert capsys.readouterr().err == "error: history.csv: No space left on device\n"
 
 
 PLUGIN_FAULTS = {
@@ -145,6 +158,7 @@ def test_plan_says_what_the_run_then_takes(tmp_path, monkeypatch, capsys):
     assert "mu_i_lc" in rows["laws"]
     assert "MB" in rows["memory"]
     assert rows["rate"].endswith("million point-steps/s, 1 thread")
+    assert re.fullmatch(r"on disk|compiled just now, in \d+ s; a run finds them on disk", rows["kernels"])
 
 
 @pytest.fixture(scope="module")

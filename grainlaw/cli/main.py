@@ -69,9 +69,12 @@ def main() -> None:
             warnings.showwarning = _show_warning
             app()
     except InputError as error:
-        _fail(error, 2)
+        _fail(str(error), 2)
     except SimulationError as error:
-        _fail(error, 1)
+        _fail(str(error), 1)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        _fail(f"{where}{error.strerror or error}", 1)
 
 
 def _escape_what_the_terminal_lacks() -> None:
@@ -101,6 +104,6 @@ def _warn_once(message: str) -> None:
     typer.echo(f"warning: {message}", err=True)
 
 
-def _fail(error: Exception, code: int) -> None:
-    typer.echo(f"error: {error}", err=True)
+def _fail(message: str, code: int) -> None:
+    typer.echo(f"error: {message}", err=True)
     sys.exit(code)

@@ -24,9 +24,12 @@ def plan(
     from rich.table import Table
 
     from grainlaw.mpm_core.parallel.threads import usable_threads
+    from grainlaw.mpm_core.stepping.compilation import noticed_compilation
     from grainlaw.mpm_core.stepping.plan import plan as plan_scene
+    from grainlaw.progress import say_that_it_compiles
 
-    planned = plan_scene(scene, usable_threads(threads))
+    with noticed_compilation(say_that_it_compiles):
+        planned = plan_scene(scene, usable_threads(threads))
     table = Table(title=scene.title or scene_file.stem, show_header=False)
     rows = {
         "laws": ", ".join(planned.laws),
@@ -41,6 +44,7 @@ def plan(
         "rate": f"{planned.points / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "
         f"{counted(planned.threads, 'thread')}",
         "expected duration": f"{planned.wall_time:.1f} s, of which output {planned.output_time:.1f} s",
+        "kernels": _kernels(planned.compile_time),
         "frames": f"{planned.frames}",
         "fields of a frame": ", ".join(planned.fields),
         "saved": "; ".join(planned.savings),
@@ -48,6 +52,10 @@ def plan(
     for name, value in rows.items():
         table.add_row(name, value)
     Console(width=110).print(table)
+
+
+def _kernels(compile_time: float) -> str:
+    return f"compiled just now, in {compile_time:.0f} s; a run finds them on disk" if compile_time else "on disk"
 
 
 def _megabytes(memory: int) -> str:

@@ -35,17 +35,17 @@ def run(
 
     from grainlaw.mpm_core.parallel.threads import usable_threads
     from grainlaw.mpm_core.stepping.run import run as run_scene
-    from grainlaw.progress import lines, shown_progress
+    from grainlaw.progress import shown_progress
 
     try:
-        with shown_progress(scene.time.end) as progress:
+        with shown_progress(scene.time.end, lines_otherwise=True) as progress:
             summary = run_scene(
                 scene,
                 folder,
                 threads=usable_threads(threads),
                 resume=resume,
                 overwrite=overwrite,
-                progress=progress or lines(scene.time.end),
+                progress=progress,
             )
     except KeyboardInterrupt as interrupt:
         notes = getattr(interrupt, "__notes__", ["stopped by Ctrl-C before the first step; nothing was written"])
@@ -54,10 +54,10 @@ def run(
 
 
 def _print_result(folder: Path, summary: "RunSummary") -> None:
-    final = summary.final
+    final, waited = summary.final, f"{summary.compile_time:.1f} s to compile or load kernels"
     typer.echo(
         f"{summary.scene or folder.name}: t = {summary.simulated_time:g} s, {counted(summary.points, 'point')}, "
-        f"{counted(summary.steps, 'step')} in {summary.wall_time:.1f} s "
+        f"{counted(summary.steps, 'step')} in {summary.wall_time:.1f} s, of which {waited} "
         f"({summary.point_steps_per_second / 1e6:.1f} million point-steps/s on {counted(summary.threads, 'thread')})"
     )
     typer.echo(

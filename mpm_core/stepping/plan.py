@@ -3,7 +3,7 @@
 import math
 import statistics
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -11,6 +11,7 @@ from grainlaw.mpm_core.output.checkpoint import Clock
 from grainlaw.mpm_core.output.recorder import Recorder, frame_interval, history_interval
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.stepping.compilation import noticed_compilation
 from grainlaw.mpm_core.stepping.peak_memory import peak_memory
 from grainlaw.mpm_core.stepping.rehearsal import FIRST_STEPS, expected_speed, rehearsals
 from grainlaw.mpm_core.stepping.run import built_simulation
@@ -28,6 +29,7 @@ class Plan:
     step, critical_time_step  at the start [s]
     steps              with the signal speeds of rehearsals on coarse grids
     wall_time          of all steps and all output [s], without compilation
+    compile_time       of the kernels that were not on disk yet and now are [s]
     savings            what this scene need not do or keep
     """
 
@@ -43,6 +45,7 @@ class Plan:
     seconds_per_step: float
     output_time: float
     wall_time: float
+    compile_time: float
     frames: int
     fields: list[str]
     savings: list[str]
@@ -51,6 +54,12 @@ class Plan:
 
 def plan(scene: Scene, threads: int = 1) -> Plan:
     """Build the scene, time some steps, rehearse it on coarse grids. Raises InputError for one that cannot be run."""
+    with noticed_compilation() as compilation:
+        planned = _plan(scene, threads)
+    return replace(planned, compile_time=compilation.seconds)
+
+
+def _plan(scene: Scene, threads: int) -> Plan:
     started = time.perf_counter()
     simulation = built_simulation(scene, threads)
     build_time = time.perf_counter() - started - simulation.build_time
@@ -77,6 +86,7 @@ def plan(scene: Scene, threads: int = 1) -> Plan:
         seconds_per_step=seconds,
         output_time=output_time,
         wall_time=build_time + steps * seconds + output_time,
+        compile_time=0.0,
         frames=stops + 1 if scene.output.vtu or scene.output.vtkhdf else 0,
         fields=simulation.fields,
         savings=_savings(simulation),
