@@ -33,9 +33,10 @@ from grainlaw.materials import (
     trace,
 )
 
-# Halvings of the bracket of ln J at the start, down to round-off.
+# ln J at the start is looked for in longer and longer steps from 0, then by halving down to round-off.
+FIRST_LOG_VOLUME, LARGEST_LOG_VOLUME = 1e-6, 5.0
+GROWTH = 1.5
 HALVINGS = 60
-LARGEST_LOG_VOLUME = 5.0
 
 
 class Parameters(NamedTuple):
@@ -60,17 +61,28 @@ def left_cauchy_green(stress: SymmetricTensor, volume_ratio: float, parameters: 
     return isotropic(1.0 - volumetric / modulus) + volume_ratio / modulus * stress
 
 
+@pointwise
+def excess_of_volume(log_volume: float, stress: SymmetricTensor, parameters: Parameters) -> float:
+    """The difference det b - J^2 at a stress."""
+    volume_ratio = math.exp(log_volume)
+    return determinant(left_cauchy_green(stress, volume_ratio, parameters)) - volume_ratio * volume_ratio
+
+
 def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
-    """The volume ratio at which det b = J^2, by bisection in ln J."""
-    low, high = -LARGEST_LOG_VOLUME, LARGEST_LOG_VOLUME
+    """The volume ratio next to 1 at which det b = J^2; NaN where none is, as above K/100 at nu = -0.97."""
+    sign = -1.0 if excess_of_volume(0.0, stress, parameters) < 0.0 else 1.0
+    near, far = 0.0, sign * FIRST_LOG_VOLUME
+    while sign * excess_of_volume(far, stress, parameters) > 0.0:
+        near, far = far, GROWTH * far
+        if abs(far) > LARGEST_LOG_VOLUME:
+            return State(math.nan, math.nan)
     for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        volume_ratio = math.exp(middle)
-        if determinant(left_cauchy_green(stress, volume_ratio, parameters)) > volume_ratio * volume_ratio:
-            low = middle
+        middle = 0.5 * (near + far)
+        if sign * excess_of_volume(middle, stress, parameters) > 0.0:
+            near = middle
         else:
-            high = middle
-    volume_ratio = math.exp(0.5 * (low + high))
+            far = middle
+    volume_ratio = math.exp(0.5 * (near + far))
     return State(density * volume_ratio, volume_ratio)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scenes_for_tests import BLOCK, changed, simulation
 
-from grainlaw.materials import SymmetricTensor, get_material, isotropic
+from grainlaw.materials import SymmetricTensor, get_material, isotropic, pressure
 
 LAW = get_material("neo_hookean")
 PARAMETERS = LAW.parameters(bulk_modulus=8e5, poisson_ratio=0.3)
@@ -52,6 +52,25 @@ def test_initial_state_belongs_to_the_stress(stress):
         )
     )
     assert np.linalg.det(b) == pytest.approx(ratio**2, rel=1e-9)
+
+
+@pytest.mark.parametrize("poisson_ratio", [-0.97, -0.7, 0.0, 0.49])
+@pytest.mark.parametrize("share", [1e-6, 1e-3, 0.005])
+def test_neo_hookean_state_under_pressure_is_the_one_next_to_no_strain(poisson_ratio, share):
+    """There are others, far from it, where Poisson's ratio is so low that the Lame constant is negative."""
+    parameters = LAW.parameters(bulk_modulus=8e5, poisson_ratio=poisson_ratio)
+    stress = isotropic(-share * 8e5)
+    state = LAW.initial_state(stress, 1000.0, parameters)
+    assert state.volume_ratio == pytest.approx(1.0 - share, abs=60.0 * share**2)
+    kept, _ = LAW.update(stress, isotropic(0.0), 1000.0, state, parameters, 1.0)
+    assert pressure(kept) == pytest.approx(share * 8e5, rel=1e-7)
+    less = LAW.update(stress, isotropic(1e-7), 1000.0 * (1.0 - 3e-7), state, parameters, 1.0)[0]
+    assert pressure(less) < share * 8e5
+
+
+def test_neo_hookean_without_a_state_under_pressure_is_no_number():
+    state = LAW.initial_state(isotropic(-1e5), 1000.0, LAW.parameters(bulk_modulus=8e5, poisson_ratio=-0.97))
+    assert np.isnan(state.volume_ratio)
 
 
 def test_simple_shear_in_the_stress_pass():

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -100,27 +100,35 @@ def bounds(subject: Subject) -> Outcome:
             continue
         fault = _fault_of(subject, parameters)
         if fault:
-            return Outcome(
-                "FAIL", f"{fault} at " + ", ".join(f"{name} = {value:.3g}" for name, value in values.items())
-            )
+            return Outcome("FAIL", f"{fault} at {listed(values)}")
     return Outcome("pass", f"{len(draws)} draws, {refused} refused as inconsistent, the others finite and under load")
 
 
+def listed(values: Mapping[str, float]) -> str:
+    """Parameters by name, for a reason."""
+    return ", ".join(f"{name} = {value:.3g}" for name, value in values.items())
+
+
 def _draws(subject: Subject) -> Iterator[dict[str, float]]:
-    """Each parameter at either end of its bounds, the others as they are; then all at ends; then all anywhere."""
+    """Parameters at the ends of their bounds, then all of them anywhere within."""
+    random = np.random.default_rng(0)
+    yield from at_ends_of_bounds(subject, random, 10 * subject.effort)
+    for _ in range(10 * subject.effort):
+        yield {
+            name: _between(found, getattr(subject.parameters, name), random.uniform(LOWER_END, UPPER_END))
+            for name, found in subject.law.parameter_declarations.items()
+        }
+
+
+def at_ends_of_bounds(subject: Subject, random: np.random.Generator, corners: int) -> Iterator[dict[str, float]]:
+    """Each parameter at either end of its bounds, the others as they are; then `corners` times all at some end."""
     declared, values = subject.law.parameter_declarations, subject.parameters._asdict()
     for share in (LOWER_END, UPPER_END):
         for name, found in declared.items():
             yield {**values, name: _between(found, values[name], share)}
-    random = np.random.default_rng(0)
-    for _ in range(10 * subject.effort):
+    for _ in range(corners):
         yield {
             name: _between(found, values[name], random.choice((LOWER_END, UPPER_END)))
-            for name, found in declared.items()
-        }
-    for _ in range(10 * subject.effort):
-        yield {
-            name: _between(found, values[name], random.uniform(LOWER_END, UPPER_END))
             for name, found in declared.items()
         }
 
