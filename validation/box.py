@@ -23,6 +23,8 @@ SIDE, CELLS = 1.0, 6
 # Of the bulk modulus.
 PRESSURE_SHARE = 0.005
 PROBE_STRAIN = 1e-6
+# Solid fraction.
+USUAL_PACKING = 0.6
 # Draws with all parameters at some end of their bounds.
 CORNERS = 10
 # Of the height.
@@ -66,7 +68,7 @@ def box(subject: Subject, parameters: Any) -> Scene:
     bottom_pressure = PRESSURE_SHARE * bulk_modulus(subject, parameters)
     if not 0.0 < bottom_pressure < math.inf:
         raise InputError(f"a small compression changes the pressure by {bottom_pressure / PRESSURE_SHARE:g} Pa a unit")
-    density = subject.parameter_set.density(bottom_pressure, parameters)
+    density = packed_density(subject, bottom_pressure, parameters)
     gravity = bottom_pressure / (density * SIDE)
     return Scene.from_dict(
         {
@@ -84,6 +86,13 @@ def box(subject: Subject, parameters: Any) -> Scene:
             ],
         }
     )
+
+
+def packed_density(subject: Subject, mean_pressure: float, parameters: Any) -> float:
+    """Bulk density [kg/m3] at rest; of a usual packing where the line of a set is nominal, above the grains'."""
+    density = subject.parameter_set.density(mean_pressure, parameters)
+    grain_density = getattr(parameters, "grain_density", math.inf)
+    return density if density <= grain_density else USUAL_PACKING * grain_density
 
 
 def bulk_modulus(subject: Subject, parameters: Any) -> float:
