@@ -5,6 +5,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from grainlaw.validation.dem.judging.element_verdicts import ElementVerdict
 from grainlaw.validation.dem.judging.fitted_laws import FittedLaw
 from grainlaw.validation.dem.judging.judgement import Judgement
 from grainlaw.validation.dem.judging.laws_against_grains import Report
@@ -50,6 +51,7 @@ def _content(report: Report, command: str) -> dict[str, Any]:
         "scatter": [_scatter(found) for found in report.scatter],
         "laws": [_law(found) for found in report.laws],
         "unfitted": report.unfitted,
+        "element_tests": [_elements(found) for found in report.elements],
         "judgements": [_judgement(found) for found in report.judgements],
         "controls": [_judgement(found) for found in report.controls],
         "limits": [_judgement(found) for found in report.limits],
@@ -76,6 +78,15 @@ def _law(found: FittedLaw) -> dict[str, Any]:
         "remarks": list(found.remarks),
         "command": found.command,
         "limits": found.judged.limits,
+    }
+
+
+def _elements(found: ElementVerdict) -> dict[str, Any]:
+    return {
+        "name": found.title,
+        "distances": {one.name: one.distance for one in found.distances},
+        "verdicts": {one.name: str(one.verdict) for one in found.distances},
+        "failures": list(found.failures),
     }
 
 

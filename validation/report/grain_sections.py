@@ -19,6 +19,7 @@ from grainlaw.validation.report.grain_figures import (
 from grainlaw.validation.report.grain_tables import (
     cost_table,
     coverage_table,
+    element_table,
     parameter_table,
     profile_table,
     scatter_table,
@@ -59,6 +60,7 @@ def sections(report: Report, shear: Rows) -> list[Section]:
         Section(scatter.title, tables=(scatter,)),
         Section("Verdicts", tables=(summary_table(report),)),
         _fits(report, shear),
+        Section("Element tests", tables=(element_table(report.elements),)),
         *(_column(report, ensemble) for ensemble in report.columns),
         Section(controls.title, (_controls_said(report),), (controls,)),
     ]

@@ -8,6 +8,7 @@ import numpy as np
 
 from grainlaw.validation.dem.catalogue import CASES
 from grainlaw.validation.dem.coverage import missing_runs, present_runs, seeds_told
+from grainlaw.validation.dem.judging.element_verdicts import ElementVerdict
 from grainlaw.validation.dem.judging.fitted_laws import FittedLaw
 from grainlaw.validation.dem.judging.judgement import Judgement
 from grainlaw.validation.dem.judging.laws_against_grains import Report
@@ -109,6 +110,26 @@ def summary_table(report: Report) -> Table:
     columns = ("law", *(f"a = {ensemble.aspect_ratio:g}" for ensemble in report.columns), "indistinguishable", "limits")
     note = "Each verdict is that of the worst of E_A, w, H and t50; in brackets: counted without t50."
     return Table("Verdicts", note, columns, tuple(rows))
+
+
+def element_table(found: Sequence[ElementVerdict]) -> Table:
+    """One row for each law, one column for what an element test measures."""
+    measured = {one.name: one for verdict in found for one in verdict.distances}
+    bands = ", ".join(f"{name} {percent(one.band)}" for name, one in measured.items() if one.band)
+    note = (
+        "Relative to the grains; of compression and steady shear the root mean square. Peak to dilation: the start of "
+        f"shear of a dense packing. Within the band: {bands}."
+    )
+    rows = [_element_row(verdict, list(measured)) for verdict in found]
+    return Table("Element tests", note, ("law", *measured, "within", "beyond twice the band"), tuple(rows))
+
+
+def _element_row(found: ElementVerdict, names: Sequence[str]) -> tuple[str, ...]:
+    by_name = {one.name: one for one in found.distances}
+    cells = [_relative(by_name[name]) if name in by_name else "" for name in names]
+    within = sum(one.verdict is Verdict.INDISTINGUISHABLE for one in found.distances)
+    beyond = [one.name for one in found.distances if one.verdict is Verdict.DIFFERS]
+    return (found.title, *cells, f"{within} of {len(found.distances)}", "; ".join([*beyond, *found.failures]))
 
 
 def parameter_table(laws: Sequence[FittedLaw]) -> Table:

@@ -9,6 +9,7 @@ from grainlaw.materials import InputError, SimulationError, get_material
 from grainlaw.validation.case import Effort, Evidence
 from grainlaw.validation.cases.collapses import aluminium_bars
 from grainlaw.validation.dem.judging.column import column_of
+from grainlaw.validation.dem.judging.element_verdicts import ElementVerdict, element_verdict
 from grainlaw.validation.dem.judging.fitted_laws import FittedLaw, JudgedLaw, fitted
 from grainlaw.validation.dem.judging.fitting_data import write_data
 from grainlaw.validation.dem.judging.judged_laws import JUDGED_LAWS
@@ -30,6 +31,7 @@ class Report:
 
     laws        fitted to shear and compression
     unfitted    what kept a law from being fitted, by its title
+    elements    each law in the element tests
     judgements  one for each law and column
     controls    deliberate mistakes, which must be noticed
     limits      laws with one thing changed
@@ -42,6 +44,7 @@ class Report:
     columns: list[Ensemble]
     laws: list[FittedLaw]
     unfitted: dict[str, str]
+    elements: list[ElementVerdict]
     judgements: list[Judgement]
     controls: list[Judgement]
     limits: list[Judgement]
@@ -78,6 +81,7 @@ def make_report(reference: ReferenceSet, folder: Path, effort: Effort, announce:
         columns=judged_columns,
         laws=laws,
         unfitted=unfitted,
+        elements=[element_verdict(law, folder / DATA) for law in laws],
         judgements=[bench.judge(law, ensemble) for ensemble in judged_columns for law in laws],
         controls=_varied(bench, reference, laws, judged_columns, CONTROLS),
         limits=[] if is_quick else _varied(bench, reference, laws, columns, LIMITS),

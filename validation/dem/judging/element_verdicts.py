@@ -1,0 +1,135 @@
+"""How far fitted laws are from the element tests of the grains, test by test, whatever each was fitted to.
+
+Start of shear of a dense packing: the peak of the friction, the strain at which it is reached, the friction after it
+and the dilation. Compression and unloading, and steady shear: root mean squares over the rows.
+"""
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from grainlaw.materials import InputError, SimulationError, get_material
+from grainlaw.materials.calibration.data import DataSet, read_data
+from grainlaw.materials.calibration.model import ForwardModel, answer
+from grainlaw.validation.dem.judging.fitted_laws import FittedLaw
+from grainlaw.validation.dem.judging.fitting_data import CRITICAL_FLOW_FILE, CYCLE_FILE, FLOW_FILE, PEAK_FILE
+from grainlaw.validation.grains.distance import Distance
+
+Array = NDArray[np.float64]
+Answers = dict[str, Array]
+
+# The packings of grains scatter by 2 to 8 % in friction at the start of shear, by 5 to 12 % in dilation.
+PEAK_BAND, SOFTENING_BAND, DILATION_BAND, COMPRESSION_BAND, STEADY_BAND = 0.05, 0.07, 0.10, 0.07, 0.03
+# The grains tell the strain of their peak to half of it.
+PEAK_STRAIN_BAND = 0.5
+# Strains after the peak of the grains.
+AFTER_PEAK = (0.025, 0.105)
+# Steps of the law between the strains of the data, among which it has a peak of its own.
+FINER = 5
+FRICTION, FRACTION, PRESSURE = "friction_of_mean_pressure", "solid_fraction", "pressure"
+
+
+@dataclass(frozen=True)
+class ElementVerdict:
+    """A law in the element tests of the grains: what each test measures, or why it could not be followed."""
+
+    title: str
+    distances: tuple[Distance, ...]
+    failures: tuple[str, ...]
+
+
+def element_verdict(law: FittedLaw, folder: Path) -> ElementVerdict:
+    """A fitted law in the tests whose data lie in a folder; a test without data is left out."""
+    distances: list[Distance] = []
+    failures = []
+    for name, measured in MEASURED.items():
+        if not (folder / name).is_file():
+            continue
+        try:
+            distances += measured(law, folder / name)
+        except (InputError, SimulationError) as error:
+            failures.append(str(error))
+    return ElementVerdict(law.judged.title, tuple(distances), tuple(failures))
+
+
+def _answers(law: FittedLaw, data: DataSet, abscissa: Array) -> Answers:
+    """The law's values at values of the driven column, by name of the measured quantity."""
+    model = ForwardModel(get_material(law.judged.law), (data,))
+    result = model.history(data, law.parameters, abscissa)
+    return {measured.name: answer(result, measured) for measured in data.measured}
+
+
+def _data(law: FittedLaw, path: Path) -> list[DataSet]:
+    return read_data(path, get_material(law.judged.law))
+
+
+def _start_of_shear(law: FittedLaw, path: Path) -> list[Distance]:
+    (data,) = _data(law, path)
+    grains = {measured.name: measured.values for measured in data.measured}
+    strains = data.abscissa
+    edges = itertools.pairwise([0.0, *strains.tolist()])
+    finer = np.concatenate([np.linspace(start, end, FINER + 1)[1:] for start, end in edges])
+    whole = _answers(law, data, finer)
+    of_law = {name: values[FINER - 1 :: FINER] for name, values in whole.items()}
+    peak, peak_of_grains = int(np.argmax(whole[FRICTION])), int(np.argmax(grains[FRICTION]))
+    after = (strains > AFTER_PEAK[0]) & (strains < AFTER_PEAK[1])
+    excess = of_law[FRICTION][after] / grains[FRICTION][after] - 1.0
+    furthest = int(np.argmax(np.abs(excess)))
+    dense = data.statements["density"] / data.statements["grain_density"]
+    return [
+        _relative("peak friction", "1", whole[FRICTION][peak], grains[FRICTION][peak_of_grains], PEAK_BAND),
+        _relative("strain of the peak", "1", finer[peak], strains[peak_of_grains], PEAK_STRAIN_BAND),
+        _relative(
+            "friction after the peak",
+            "1",
+            of_law[FRICTION][after][furthest],
+            grains[FRICTION][after][furthest],
+            SOFTENING_BAND,
+        ),
+        _relative(
+            "dilation", "1", np.log(dense / of_law[FRACTION][-1]), np.log(dense / grains[FRACTION][-1]), DILATION_BAND
+        ),
+    ]
+
+
+def _compression(law: FittedLaw, path: Path) -> list[Distance]:
+    squares: list[float] = []
+    for data in _data(law, path):
+        (measured,) = data.measured
+        error = _answers(law, data, data.abscissa)[PRESSURE] / measured.values - 1.0
+        squares += (error[np.isfinite(error)] ** 2).tolist()
+    return [_scatter("compression", squares, COMPRESSION_BAND)]
+
+
+def _steady_shear(law: FittedLaw, path: Path) -> list[Distance]:
+    """Over all rates; the solid fraction of a law that was fitted to one."""
+    own = next((name for name in law.judged.data if name in (FLOW_FILE, CRITICAL_FLOW_FILE)), "")
+    (data,) = _data(law, path.with_name(own) if own else path)
+    of_law = _answers(law, data, data.abscissa)
+    names = {FRICTION: "steady friction"} | ({FRACTION: "steady solid fraction"} if own else {})
+    return [
+        _scatter(names[found.name], ((of_law[found.name] / found.values - 1.0) ** 2).tolist(), STEADY_BAND)
+        for found in data.measured
+        if found.name in names
+    ]
+
+
+def _relative(name: str, unit: str, measured: float, reference: float, band: float) -> Distance:
+    return Distance(name, name, unit, float(measured), float(reference), float(measured / reference - 1.0), band)
+
+
+def _scatter(name: str, squares: list[float], band: float) -> Distance:
+    """The root mean square of relative errors."""
+    size = float(np.sqrt(np.mean(squares)))
+    return Distance(name, name, "1", size, 0.0, size, band)
+
+
+MEASURED: dict[str, Callable[[FittedLaw, Path], list[Distance]]] = {
+    PEAK_FILE: _start_of_shear,
+    CYCLE_FILE: _compression,
+    FLOW_FILE: _steady_shear,
+}
