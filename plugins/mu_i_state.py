@@ -72,6 +72,8 @@ LARGEST_ERROR = 1e-6
 MAXIMUM_ITERATIONS = 200
 # Beyond it no pressure is left: at 1000 1/s and 15 mm less than 1e-6 Pa.
 LARGEST_NUMBER = 1e6
+# Solid fraction phi_j of the set `paper_dense`.
+DENSE = 0.61
 
 
 class Parameters(NamedTuple):
@@ -347,6 +349,11 @@ def density_at_rest(mean_pressure: float, parameters: Parameters) -> float:
     return parameters.grain_density * parameters.resting_solid_fraction * (1.0 + parameters.compaction * z) / (1.0 - z)
 
 
+def density_of_dense_packing(mean_pressure: float, parameters: Parameters) -> float:
+    """Bulk density [kg/m3] of a packing whose phi_j is 0.61, pressed together with little friction."""
+    return parameters.grain_density * DENSE / (1.0 - elastic_strain_of(mean_pressure, parameters))
+
+
 DEM = Parameters(
     static_friction=0.515,
     dynamic_friction=0.900,
@@ -365,6 +372,15 @@ DEM = Parameters(
     grain_diameter=0.015,
 )
 
+PAPER = DEM._replace(
+    static_friction=1.20 / math.sqrt(3.0),
+    dynamic_friction=2.16 / math.sqrt(3.0),
+    inertial_number_constant=0.279,
+    stiffness=392e3**2 / 4000.0,
+    grain_diameter=0.005,
+)
+SOURCE = "friction of `mu_i_lc`, Table 1 of its source, and its stiffness at 1000 Pa; the rest as in dem"
+
 LAW = Law(
     name="mu_i_state",
     summary="state-parameter mu(I): one law for standing, failing and flowing grains",
@@ -382,16 +398,12 @@ LAW = Law(
             "resistance, 12 to 18 mm; phi_n the looser of two compressed packings; phi_min, k and nu are choices",
             density_at_rest,
         ),
-        "paper": ParameterSet(
-            DEM._replace(
-                static_friction=1.20 / math.sqrt(3.0),
-                dynamic_friction=2.16 / math.sqrt(3.0),
-                inertial_number_constant=0.279,
-                stiffness=392e3**2 / 4000.0,
-                grain_diameter=0.005,
-            ),
-            "friction of `mu_i_lc`, Table 1 of its source, and its stiffness at 1000 Pa; the rest as in dem",
-            density_at_rest,
+        "paper": ParameterSet(PAPER, f"{SOURCE}; as loose as can rest", density_at_rest),
+        "paper_dense": ParameterSet(
+            PAPER,
+            f"{SOURCE}; dense, phi_j = 0.61",
+            density_of_dense_packing,
+            {"constant-pressure-shear": {"density": 1500.0}},
         ),
     },
 )

@@ -28,7 +28,7 @@ CURVES = {
     "mu_i_lc_viscous": Curves(SHEAR, ("paper",)),
     "mu_i_mcc": Curves(SHEAR, ("paper", "paper_ocr4")),
     "mu_i_phi_i": Curves(SHEAR, ("paper", "dem_shear")),
-    "mu_i_state": Curves(SHEAR, ("paper", "dem")),
+    "mu_i_state": Curves(SHEAR, ("paper", "paper_dense", "dem")),
     "neo_hookean": Curves("oedometer", ("vortex",), ("final_strain=0.15",)),
     "newtonian": Curves(SHEAR, ("glycerol",)),
 }
