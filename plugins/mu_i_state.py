@@ -350,8 +350,9 @@ def density_at_rest(mean_pressure: float, parameters: Parameters) -> float:
 
 
 def density_of_dense_packing(mean_pressure: float, parameters: Parameters) -> float:
-    """Bulk density [kg/m3] of a packing whose phi_j is 0.61, pressed together with little friction."""
-    return parameters.grain_density * DENSE / (1.0 - elastic_strain_of(mean_pressure, parameters))
+    """Bulk density [kg/m3] of a packing whose phi_j is 0.61, or of the loosest at rest where that is denser."""
+    pressed = parameters.grain_density * DENSE / (1.0 - elastic_strain_of(mean_pressure, parameters))
+    return max(pressed, density_at_rest(mean_pressure, parameters))
 
 
 DEM = Parameters(
