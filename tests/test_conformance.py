@@ -8,7 +8,10 @@ from pathlib import Path
 import pytest
 from documentation import DOCS
 
+from grainlaw import plugins
 from grainlaw.materials import get_material, registry
+from grainlaw.materials.conformance.finished import finished, unfinished
+from grainlaw.materials.conformance.subject import Subject
 from grainlaw.materials.conformance.suite import CHECKS, QUICK, examine
 from grainlaw.materials.registry import Registry
 
@@ -17,6 +20,7 @@ STRENGTH = "    strength = parameters.friction_coefficient * p + cohesion if p >
 FACTOR = "shear_stress / max(trial_shear_stress, 1e-300) * trial"
 RETURNED = f"    return assembled_stress(p, {FACTOR}), new_state\n"
 MISTAKES = {
+    "finished": ("parameters.friction_coefficient * p + cohesion", "0.6 * p + cohesion"),
     "dissipation": (
         RETURNED,
         RETURNED.replace(
@@ -84,6 +88,46 @@ def test_law_that_loses_its_pressure_at_the_end_of_its_bounds_is_caught(tmp_path
     assert "compression by 1% takes the pressure from 1000 to -0 Pa" in outcomes["bounds"].reason
 
 
+TEMPLATE = Path(plugins.__file__).parent / "template" / "coulomb_example.py"
+UNWRITTEN, WRITTEN = (
+    "    factor = 1.0 if p > 0.0 else 0.0\n",
+    "    factor = min(1.0, parameters.critical_state_ratio * p / max(deviatoric_stress(trial), 1e-300))\n",
+)
+
+
+def template_law(text, folder):
+    path = folder / "coulomb_example.py"
+    path.write_text(text.replace("    deviator,\n", "    deviator,\n    deviatoric_stress,\n"))
+    found = Registry()
+    found.load_file(path)
+    return found.get("coulomb_example").law
+
+
+def test_what_is_left_to_write_in_a_template_is_said_a_line_for_each_thing(tmp_path):
+    law = template_law(TEMPLATE.read_text(), tmp_path)
+    parameter, *lines = unfinished(law)
+    assert parameter == "parameter critical_state_ratio is declared, but update does not use it"
+    assert [re.match(r"coulomb_example.py, line \d+: ", line) is not None for line in lines] == [True] * 3
+    assert "the return to the yield surface (3) is still to be written" in lines[1]
+    outcome = finished(Subject(law, "sand", QUICK))
+    assert (outcome.verdict, outcome.reason) == ("FAIL", "declared, but not used by `update`: critical_state_ratio")
+
+
+def test_template_whose_update_is_written_has_only_its_words_left(tmp_path):
+    text = TEMPLATE.read_text()
+    assert text.count(UNWRITTEN) == 1
+    law = template_law(text.replace(UNWRITTEN, WRITTEN), tmp_path)
+    assert finished(Subject(law, "sand", QUICK)).verdict == "pass"
+    assert len(unfinished(law)) == 3
+
+
+@pytest.mark.parametrize("use", ["parameters[0]", "tuple(parameters)[0]", "getattr(parameters, FIELD)"])
+def test_parameter_that_is_used_without_its_name_is_used(use, tmp_path):
+    text = SOUND_LAW.replace(STRENGTH, STRENGTH.replace("parameters.friction_coefficient", use))
+    text = text.replace("class State", "FIELD = 'friction_coefficient'\n\n\nclass State")
+    assert finished(Subject(law_of(text, tmp_path), "weak", QUICK)).verdict == "pass"
+
+
 def test_every_check_has_its_deliberate_mistake():
     without = {"declarations", "viscosity", "ptx", "cost"}
     assert {check.name for check in CHECKS} == MISTAKES.keys() | without
@@ -132,6 +176,7 @@ def test_command_prints_one_line_per_check_and_exits_1_on_failure(tmp_path):
     assert done.returncode == 1
     assert re.search("sound speed +FAIL", done.stdout)
     assert "cemented_sand: fails sound speed" in done.stdout
+    assert "unfinished" not in done.stdout
     assert all(found.name in done.stdout for found in CHECKS)
     path.write_text(SOUND_LAW)
     done = check(path)
@@ -139,9 +184,17 @@ def test_command_prints_one_line_per_check_and_exits_1_on_failure(tmp_path):
     assert "passes every check" in done.stdout
 
 
+def test_command_lists_what_is_left_to_write():
+    done = check(TEMPLATE)
+    assert done.returncode == 1
+    assert "\nunfinished: parameter critical_state_ratio is declared, but update does not use it\n" in done.stdout
+    assert done.stdout.count("\nunfinished: coulomb_example.py, line ") == 3
+    assert done.stdout.endswith("coulomb_example: fails finished\n")
+
+
 def check(plugin: Path):
     return subprocess.run(
-        [sys.executable, "-m", "grainlaw", "check", "cemented_sand", "--quick", "--plugin", str(plugin)],
+        [sys.executable, "-m", "grainlaw", "check", plugin.stem, "--quick", "--plugin", str(plugin)],
         capture_output=True,
         text=True,
         check=False,

@@ -23,6 +23,7 @@ def check(
     from rich.console import Console
     from rich.table import Table
 
+    from grainlaw.materials.conformance.finished import unfinished
     from grainlaw.materials.conformance.suite import CHECKS, FULL, QUICK, examine
     from grainlaw.validation.box import BOX
 
@@ -35,6 +36,8 @@ def check(
         if outcome.verdict == "FAIL":
             failed.append(found.name)
     Console(width=WIDTH, markup=False).print(table)
+    for left in unfinished(chosen):
+        typer.echo(f"unfinished: {left}")
     typer.echo(f"{law}: " + (f"fails {', '.join(failed)}" if failed else "passes every check that could be made"))
     if failed:
         raise typer.Exit(1)

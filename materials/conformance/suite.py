@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from grainlaw.materials import Law
-from grainlaw.materials.conformance import code, declared, energy, mechanics
+from grainlaw.materials.conformance import code, declared, energy, finished, mechanics
 from grainlaw.materials.conformance.outcome import Check, Outcome
 from grainlaw.materials.conformance.subject import Subject
 
@@ -12,6 +12,11 @@ CHECKS = (
         "declarations",
         "every quantity states its unit, meaning and bounds, the header its equations",
         declared.declarations,
+    ),
+    Check(
+        "finished",
+        "`update` uses every parameter that is declared; what the file says is to be written is listed",
+        finished.finished,
     ),
     Check("units", "in other units of length, mass and time the answers are the same", declared.units),
     Check(
