@@ -53,7 +53,7 @@ class Simulation:
         self.periodic_axes = _periodic_axes(scene)
         size = (scene.grid.lower, scene.grid.cells, scene.grid.cell_size)
         self.grid = Grid(*size, self.periodic_axes, self.basis.wall_node_fraction, scene.precision)
-        self.fields = chosen_fields(scene.output.fields, [scene.law(section.material) for section in scene.body])
+        self.fields = chosen_fields(scene)
         self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
         signals = self._signals_of_points()
         refuse_coarse_stress(self.bodies, signals, scene.gravity)

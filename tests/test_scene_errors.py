@@ -67,6 +67,11 @@ FAULTS = {
                       r"output\.fields: unknown field 'presure'; did you mean 'pressure'\?"),
     "field that no law gives": ({"output.fields": ["solid_fraction"]},
                                 r"output\.fields: 'solid_fraction' needs a law with the parameter 'grain_density'"),
+    "unknown field of pictures": ({"output.picture_field": "presure"},
+                                  r"output\.picture_field: unknown field 'presure'; did you mean 'pressure'\? "
+                                  r"allowed: velocity, pressure, .*shear_strain.*, body\n"),
+    "field like no other": ({"output.picture_field": "temperature"},
+                            r"output\.picture_field: unknown field 'temperature'; valid names: body, .*velocity"),
     "no body": ({"body": []}, r"body = \[\]: allowed: 1 or more entries"),
     "body is a number": ({"body": 3}, r"body = 3: allowed: a list"),
     "points per cell": ({"body.0.points_per_cell": 5}, r"body\.0\.points_per_cell = 5: allowed: 1, 4, 9, 16, 25 or 36"),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from grainlaw.materials import InputError, SymmetricTensor
+from grainlaw.materials import InputError, StateVariable, SymmetricTensor
 from grainlaw.materials.errors import nearest_name
 from grainlaw.materials.law import Law
 from grainlaw.materials.tensor import deviatoric_stress, pressure
@@ -14,6 +14,7 @@ from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.kernels.invariants import over_stress
 from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, SZZ
 from grainlaw.mpm_core.output.frame import Field, Frame
+from grainlaw.mpm_core.scene.model import Scene
 
 Array = NDArray[np.float64]
 
@@ -79,20 +80,41 @@ BODY_FIELD = "body"
 _DEFAULTS = ("velocity", "pressure", "deviatoric_stress", "shear_strain", "solid_fraction")
 
 
-def chosen_fields(requested: list[str] | None, laws: Sequence[Law]) -> list[str]:
-    """The names of the fields to write. Raises InputError for a name that neither the core nor any law knows."""
-    states = {name: declared for law in laws for name, declared in law.state_declarations.items()}
-    if requested is None:
-        available = [name for name in _DEFAULTS if _is_available(name, laws)]
-        return available + [name for name, declared in states.items() if declared.output]
-    for name in requested:
-        if name not in FIELDS and name not in states and name != BODY_FIELD:
-            raise InputError(
-                f"output.fields: unknown field '{name}'; {nearest_name(name, [*FIELDS, *states, BODY_FIELD])}"
-            )
-        if name in FIELDS and not _is_available(name, laws):
-            raise InputError(f"output.fields: '{name}' needs a law with the parameter '{FIELDS[name].needs}'")
-    return list(requested)
+def chosen_fields(scene: Scene) -> list[str]:
+    """The names of the fields to write: those that a scene asks for, and what its pictures show.
+
+    Raises InputError for a name that neither the core nor any law knows.
+    """
+    laws = [scene.law(section.material) for section in scene.body]
+    output = scene.output
+    names = _defaults(laws) if output.fields is None else list(output.fields)
+    for name in names:
+        _refuse_unknown("output.fields", name, laws)
+    if output.picture_field is not None:
+        _refuse_unknown("output.picture_field", output.picture_field, laws)
+        names.append(output.picture_field)
+    if len({section.material for section in scene.body}) > 1:
+        names.append(BODY_FIELD)
+    return list(dict.fromkeys(names))
+
+
+def _defaults(laws: Sequence[Law]) -> list[str]:
+    available = [name for name in _DEFAULTS if _is_available(name, laws)]
+    return available + [name for name, declared in _states(laws).items() if declared.output]
+
+
+def _states(laws: Sequence[Law]) -> dict[str, StateVariable]:
+    return {name: declared for law in laws for name, declared in law.state_declarations.items()}
+
+
+def _refuse_unknown(key: str, name: str, laws: Sequence[Law]) -> None:
+    if name in FIELDS and not _is_available(name, laws):
+        raise InputError(f"{key}: '{name}' needs a law with the parameter '{FIELDS[name].needs}'")
+    valid = [*(known for known in FIELDS if _is_available(known, laws)), *_states(laws), BODY_FIELD]
+    if name not in valid:
+        close = nearest_name(name, valid)
+        listed = f" allowed: {', '.join(valid)}" if close.startswith("did") else ""
+        raise InputError(f"{key}: unknown field '{name}'; {close}{listed}")
 
 
 def _is_available(name: str, laws: Sequence[Law]) -> bool:

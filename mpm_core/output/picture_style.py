@@ -10,6 +10,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from grainlaw.materials import atomic
@@ -18,6 +19,9 @@ from grainlaw.mpm_core.output.point_image import ColorScale
 
 PAPER_WIDTH = 7.2
 """Width of a figure over both columns of a page [inch]."""
+
+LEGEND_HEIGHT = 0.3
+"""What the names of outlined materials take below a picture [inch]."""
 
 COLOR_MAP = "copper"
 _DOTS_PER_INCH = 250
@@ -71,3 +75,8 @@ def color_bar(figure: Figure, image: ScalarMappable, axes: list[Axes], label: st
     extend = "max" if image.get_clim()[0] == 0.0 else "both"
     bar = figure.colorbar(image, ax=axes, extend=extend, label=label, shrink=0.9, aspect=25, pad=0.02)
     bar.outline.set_linewidth(0.6)
+
+
+def name_outlines(figure: Figure, lines: Sequence[Line2D]) -> None:
+    """The names of outlined materials in a row below everything."""
+    figure.legend(handles=lines, loc="outside lower center", ncols=len(lines), frameon=False)

@@ -1,4 +1,4 @@
-"""The pictures of a run: its last frame, its history and, where a body shift_points, its snapshots."""
+"""The pictures of a run: its last frame, its history and, where a body spreads, its snapshots."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,11 +8,14 @@ from matplotlib.axes import Axes
 
 from grainlaw.mpm_core.output.frame import Frame
 from grainlaw.mpm_core.output.history import HISTORY_COLUMNS
+from grainlaw.mpm_core.output.materials_of_points import Materials, materials_of
 from grainlaw.mpm_core.output.picture_style import (
+    LEGEND_HEIGHT,
     PAPER_WIDTH,
     color_bar,
     color_scale,
     field_label,
+    name_outlines,
     paper_picture,
     quantity_label,
     scalar_values,
@@ -33,6 +36,7 @@ _ENERGIES = (
     "numerical_dissipation",
 )
 _SPREADING = 1.1
+USUAL_FIELD, USUAL_LIMITS = "shear_strain", (0.0, 3.0)
 
 
 def draw_frame(
@@ -41,21 +45,26 @@ def draw_frame(
     path: Path,
     limits: tuple[float, float] | None = None,
     spacing: float | None = None,
+    materials: Materials | None = None,
 ) -> None:
     """Write a picture of one frame coloured by a field, a vector by its length.
 
-    `spacing` [m] is that of the points when they were generated; without it the present distances stand in.
+    `spacing` [m] is that of the points when they were generated; without it the present distances stand in. Several
+    `materials` get outlines, with their names below.
     Raises InputError if the frame does not hold the field.
     """
     shown = frame.field(field)
     values = scalar_values(shown)
     spacing = point_spacing(frame.positions) if spacing is None else spacing
     box = view_box([bounding_box(frame.positions, spacing)])
-    with paper_picture(path, _height(box), "compressed") as figure:
+    groups = materials.of_points(frame) if materials is not None else None
+    with paper_picture(path, _height(box) + LEGEND_HEIGHT * (groups is not None), "compressed") as figure:
         axes = figure.subplots()
-        image = draw_points(axes, frame.positions, values, spacing, color_scale([values], limits))
+        image = draw_points(axes, frame.positions, values, spacing, color_scale([values], limits), groups)
         axes.set(xlabel="$x$ [m]", ylabel="$y$ [m]", xlim=box[:2], ylim=box[2:], title=time_label(frame.time))
         color_bar(figure, image, [axes], field_label(shown))
+        if materials is not None and groups is not None:
+            name_outlines(figure, materials.legend())
 
 
 def draw_history(runs: Sequence[tuple[str, RunFolder]], path: Path) -> None:
@@ -80,25 +89,29 @@ def draw_history(runs: Sequence[tuple[str, RunFolder]], path: Path) -> None:
         below.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
 
 
-def write_run_pictures(folder: Path, field: str = "shear_strain") -> list[Path]:
+def write_run_pictures(folder: Path) -> list[Path]:
     """Write final.png, history.png and, if the runout grew by more than a tenth, snapshots.png; return their paths.
 
-    Without the field the pictures show the first one that the frames hold. Raises InputError if the folder lacks
-    frames or history, or if its frames hold no field.
+    They show what `output.picture_field` of the scene says; by default the shear strain, or without it the first field
+    that the frames hold. Raises InputError if the folder lacks frames or history, or if its frames hold no such field.
     """
     run = RunFolder(folder)
     last = run.load_frame(-1)
-    if field not in {held.name for held in last.fields} and last.fields:
-        field = last.fields[0].name
-    limits = (0.0, 3.0) if field == "shear_strain" else None
+    field = run.scene.get("output", {}).get("picture_field") or _usual_field(last)
+    limits = USUAL_LIMITS if field == USUAL_FIELD else None
     written = [folder / "final.png", folder / "history.png"]
-    draw_frame(last, field, written[0], limits, point_spacing(run.load_frame(0).positions))
+    draw_frame(last, field, written[0], limits, point_spacing(run.load_frame(0).positions), materials_of(run))
     draw_history([(folder.name, run)], written[1])
     runout = run.history["runout"]
     if runout.max() > _SPREADING * runout[0]:
         written.append(folder / "snapshots.png")
         draw_snapshots([(folder.name, run)], written[2], field, limits)
     return written
+
+
+def _usual_field(frame: Frame) -> str:
+    held = [field.name for field in frame.fields]
+    return held[0] if held and USUAL_FIELD not in held else USUAL_FIELD
 
 
 def _height(box: tuple[float, float, float, float]) -> float:

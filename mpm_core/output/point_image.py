@@ -17,6 +17,9 @@ _REACH_IN_SPACINGS = 2.0
 _OUTLINE_IN_SPACINGS = 0.75
 _FLOOR_TOLERANCE = 0.02
 _PIXELS_ACROSS = 900
+# None of them on the colour map, from black over copper to light brown.
+_OUTLINE_COLORS = ("tab:blue", "tab:green", "tab:red", "tab:purple", "tab:cyan", "tab:pink")
+_OUTLINE_WIDTH = 1.0
 _POINTS_SAMPLED = 5000
 
 
@@ -61,10 +64,16 @@ def view_box(boxes: Sequence[tuple[float, float, float, float]]) -> tuple[float,
 
 
 def draw_points(
-    axes: Axes, positions: NDArray[np.float64], values: NDArray[np.float64], spacing: float, scale: ColorScale
+    axes: Axes,
+    positions: NDArray[np.float64],
+    values: NDArray[np.float64],
+    spacing: float,
+    scale: ColorScale,
+    groups: NDArray[np.int64] | None = None,
 ) -> AxesImage:
     """Draw the x-y plane of points of shape (points, 3) coloured by values of shape (points,).
 
+    `groups`, shape (points,), are numbers of materials: each is drawn with an outline of its own colour.
     Everything outside the body stays blank. The cost grows with the pixels, hardly with the points.
     """
     left, right, bottom, top = bounding_box(positions, spacing)
@@ -77,10 +86,10 @@ def draw_points(
     # Grown by the reach, then shrunk back to the outline: gaps close, the outline stays.
     grown = np.isfinite(distances)
     solid = distance_transform_edt(grown, sampling=pixel) > reach - max(_OUTLINE_IN_SPACINGS * spacing, pixel)
-    image = np.ma.masked_array(values[np.where(grown, nearest, 0)], mask=~solid)
+    nearest = np.where(grown, nearest, 0)
     half = pixel / 2
-    return axes.imshow(
-        image,
+    image = axes.imshow(
+        np.ma.masked_array(values[nearest], mask=~solid),
         extent=(x[0] - half, x[-1] + half, y[0] - half, y[-1] + half),
         origin="lower",
         interpolation="nearest",
@@ -89,3 +98,13 @@ def draw_points(
         vmax=scale.upper,
         aspect="equal",
     )
+    if groups is not None:
+        for group in np.unique(groups):
+            region = solid & (groups[nearest] == group)
+            axes.contour(x, y, region, [0.5], colors=[outline_color(group)], linewidths=_OUTLINE_WIDTH)
+    return image
+
+
+def outline_color(group: int) -> str:
+    """The colour of the outline of a material, by its number."""
+    return _OUTLINE_COLORS[group % len(_OUTLINE_COLORS)]

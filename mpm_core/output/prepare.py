@@ -10,12 +10,11 @@ from grainlaw.mpm_core.output.folder_lock import held
 from grainlaw.mpm_core.output.frame_series import COLLECTION_NAME, FrameSeries
 from grainlaw.mpm_core.output.history import HISTORY_NAME, keep_rows
 from grainlaw.mpm_core.output.quantities import QUANTITIES_NAME
-from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.output.run_folder import SCENE_NAME, RunFolder
 from grainlaw.mpm_core.output.summary import SUMMARY_NAME
 from grainlaw.mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame, drop_after
 from grainlaw.mpm_core.simulation import Simulation
 
-SCENE_NAME = "scene.toml"
 OF_THE_END = (SUMMARY_NAME, "final.png", "history.png", "snapshots.png")
 OWN_FILES = (
     SCENE_NAME,

@@ -1,5 +1,6 @@
 """A run's folder opened for reading, finished or still running."""
 
+import tomllib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,6 +17,8 @@ from grainlaw.mpm_core.output.quantities import read_field_documentation
 from grainlaw.mpm_core.output.summary import RunSummary, read_summary
 from grainlaw.mpm_core.output.vtu import read_vtu
 
+SCENE_NAME = "scene.toml"
+
 
 @dataclass(frozen=True)
 class RunFolder:
@@ -29,6 +32,17 @@ class RunFolder:
     def __post_init__(self) -> None:
         if not self.path.is_dir():
             raise InputError(f"run folder {self.path} does not exist")
+
+    @cached_property
+    def scene(self) -> dict[str, Any]:
+        """The tables of the scene that was run; empty where it is missing."""
+        path = self.path / SCENE_NAME
+        if not path.is_file():
+            return {}
+        try:
+            return tomllib.loads(path.read_text(encoding="utf-8"))
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise InputError(f"{path} cannot be read: {error}") from error
 
     @cached_property
     def frame_files(self) -> tuple[FrameFile, ...]:

@@ -13,11 +13,14 @@ from numpy.typing import NDArray
 
 from grainlaw.materials import InputError
 from grainlaw.mpm_core.output.frame import Frame
+from grainlaw.mpm_core.output.materials_of_points import Materials, materials_of
 from grainlaw.mpm_core.output.picture_style import (
+    LEGEND_HEIGHT,
     PAPER_WIDTH,
     color_bar,
     color_scale,
     field_label,
+    name_outlines,
     paper_picture,
     scalar_values,
     time_label,
@@ -30,11 +33,12 @@ NORMALIZED_RUNOUTS = (0.1, 0.5, 1.0)
 
 @dataclass(frozen=True)
 class _Snapshot:
-    """A frame, its normalised runout and the spacing [m] of the points in the run's first frame."""
+    """A frame, its normalised runout, the spacing [m] of the points in the run's first frame, and their materials."""
 
     frame: Frame
     normalized_runout: float
     spacing: float
+    groups: NDArray[np.int64] | None
 
 
 def normalized_runout(run: RunFolder, times: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -59,12 +63,17 @@ def draw_snapshots(
 
     Raises InputError if a run lacks frames, history or the field, or if its runout never grew.
     """
-    rows = [(label, _snapshots(run)) for label, run in runs]
+    of_runs = [materials_of(run) for _, run in runs]
+    # A material has one colour in all rows.
+    names = tuple(dict.fromkeys(name for materials in of_runs for name in materials.names))
+    materials = [found.among(names) for found in of_runs]
+    rows = [(label, _snapshots(run, found)) for (label, run), found in zip(runs, materials, strict=True)]
     all_snapshots = [snapshot for _, row in rows for snapshot in row]
     fields = [snapshot.frame.field(field) for snapshot in all_snapshots]
     scale = color_scale([scalar_values(one) for one in fields], limits)
     box = view_box([bounding_box(one.frame.positions, one.spacing) for one in all_snapshots])
-    with paper_picture(path, _height(len(rows), box), "compressed") as figure:
+    is_outlined = any(one.groups is not None for one in all_snapshots)
+    with paper_picture(path, _height(len(rows), box) + LEGEND_HEIGHT * is_outlined, "compressed") as figure:
         grid = figure.subplots(len(rows), len(NORMALIZED_RUNOUTS), sharex=True, sharey=True, squeeze=False)
         for axes_row, (label, row) in zip(grid, rows, strict=True):
             for axes, snapshot in zip(axes_row, row, strict=True):
@@ -78,19 +87,22 @@ def draw_snapshots(
             axes.set_xlabel("$x$ [m]")
         grid[0, 0].set(xlim=box[:2], ylim=box[2:])
         color_bar(figure, grid[0, 0].images[0], list(grid.flat), field_label(fields[0]))
+        if is_outlined:
+            name_outlines(figure, materials[0].legend())
 
 
-def _snapshots(run: RunFolder) -> list[_Snapshot]:
+def _snapshots(run: RunFolder, materials: Materials) -> list[_Snapshot]:
     """The frames of one run that come nearest to the three normalised runouts."""
     reached = normalized_runout(run, run.frame_times)
     spacing = point_spacing(run.load_frame(0).positions)
     chosen = [int(np.argmin(np.abs(reached - target))) for target in NORMALIZED_RUNOUTS]
-    return [_Snapshot(run.load_frame(index), float(reached[index]), spacing) for index in chosen]
+    frames = [(run.load_frame(index), float(reached[index])) for index in chosen]
+    return [_Snapshot(frame, share, spacing, materials.of_points(frame)) for frame, share in frames]
 
 
 def _draw_snapshot(axes: Axes, snapshot: _Snapshot, field: str, scale: ColorScale) -> None:
     frame = snapshot.frame
-    draw_points(axes, frame.positions, scalar_values(frame.field(field)), snapshot.spacing, scale)
+    draw_points(axes, frame.positions, scalar_values(frame.field(field)), snapshot.spacing, scale, snapshot.groups)
     note = rf"$\bar{{w}} = {snapshot.normalized_runout:.2f}$" + "\n" + time_label(frame.time)
     axes.text(0.97, 0.94, note, transform=axes.transAxes, ha="right", va="top", fontsize="small")
 

@@ -237,7 +237,13 @@ class OutputSection(Section):
     fields: list[str] | None = Field(
         default=None,
         description="fields of each frame; default: velocity, pressure, deviatoric_stress, shear_strain, "
-        "solid_fraction where the law knows the grain density, and the state variables that the law marks for output",
+        "solid_fraction where the law knows the grain density, and the state variables that the law marks for output; "
+        "frames of several materials hold body, too",
+    )
+    picture_field: str | None = Field(
+        default=None,
+        description="field that final.png and snapshots.png are coloured by, a vector by its length; frames then hold "
+        "it; default: shear_strain, or the first one of `fields`",
     )
     vtu: bool = Field(default=True, description="write points_NNNNNN.vtu and run.pvd")
     vtkhdf: bool = Field(default=False, description="write all frames to one run.vtkhdf")

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from grainlaw.materials import InputError
-from grainlaw.mpm_core.output.prepare import SCENE_NAME
 from grainlaw.mpm_core.output.recorder import frame_interval, history_interval
+from grainlaw.mpm_core.output.run_folder import SCENE_NAME
 from grainlaw.mpm_core.output.summary import SUMMARY_NAME, read_summary
 from grainlaw.mpm_core.scene.model import Scene
 

@@ -3,8 +3,7 @@
 from pathlib import Path
 
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.output.prepare import SCENE_NAME
-from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.output.run_folder import SCENE_NAME, RunFolder
 from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.validation.grains.material_points import DEPTH, grain_density, grain_diameter, mirrored, snapshots_of_run

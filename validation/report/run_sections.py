@@ -5,8 +5,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from grainlaw.mpm_core.output.pictures import draw_history, write_run_pictures
-from grainlaw.mpm_core.output.prepare import SCENE_NAME
-from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.output.run_folder import SCENE_NAME, RunFolder
 from grainlaw.validation.report.page import Picture, Section, Table
 from grainlaw.validation.report.plots import embedded
 

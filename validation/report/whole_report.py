@@ -6,7 +6,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from grainlaw.materials import InputError
-from grainlaw.mpm_core.output.prepare import SCENE_NAME
+from grainlaw.mpm_core.output.run_folder import SCENE_NAME
 from grainlaw.validation.report.page import SECTIONS, Page, Section, read_page
 from grainlaw.validation.report.run_sections import run_sections
 from grainlaw.validation.report.write import write_texts
