@@ -1,5 +1,7 @@
 """`grainlaw element`: results, files, error lines and exit codes."""
 
+import re
+
 import pytest
 from scenes_for_tests import grainlaw
 
@@ -39,6 +41,29 @@ def test_mixed_control_from_a_file(tmp_path):
     done = grainlaw("element", "mixed", "--material", "mu_i_lc", "--control", str(control))
     assert done.returncode == 0, done.stderr
     assert "after 10 steps" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("law", "setting", "warning"),
+    [
+        (
+            "mu_i_lc",
+            ("--set", "initial_pressure=5e4"),
+            r"the initial density 3638\.21 .* above the density of the grains, 2450 kg/m3: .* nominal",
+        ),
+        ("mu_i_lc", ("--set", "density=2500"), r"density = 2500 kg/m3 is above .* no packing is as dense$"),
+        ("mu_i_lc", ("--set", "density=1500"), ""),
+        ("mu_i_phi_i", (), ""),
+        ("newtonian", (), ""),
+    ],
+)
+def test_density_above_that_of_the_grains_is_explained(law, setting, warning):
+    done = grainlaw("element", "isotropic", "--material", law, *setting, "--set", "final_strain=1e-3", *FAST)
+    assert done.returncode == 0, done.stderr
+    if warning:
+        assert re.fullmatch(f"warning: {law}: {warning}.*\n", done.stderr), done.stderr
+    else:
+        assert done.stderr == ""
 
 
 def test_viscosity_of_what_does_not_flow_is_said_to_be_none(tmp_path):

@@ -107,4 +107,5 @@ def run_element_test(
             raise InputError(f"{name} = {value!r}: a number is needed")
     chosen = chosen_test(test, None if control is None else Path(control))
     specimen, settings = prepared(law, parameter_set, values, chosen)
+    specimen.warn_about_density(settings.initial_pressure, settings.density)
     return ElementTestResult(run_prepared(chosen, specimen, settings))

@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any
 
 from grainlaw.materials.declarations import checked_parameters
 from grainlaw.materials.element.settings import ElementTest
-from grainlaw.materials.errors import InputError, nearest_name
+from grainlaw.materials.errors import InputError, InputWarning, nearest_name
 from grainlaw.materials.law import Law
 from grainlaw.materials.registry import get_material
 
@@ -40,6 +41,21 @@ class Specimen:
         if not 0.0 < density < math.inf:
             raise InputError(f"{self.law.name} has no density at rest under {pressure:g} Pa; set density [kg/m3]")
         return density
+
+    def warn_about_density(self, pressure: float, stated: float) -> None:
+        """Warn, as InputWarning, about an initial density, as of `density`, above that of the law's grains."""
+        density, grain_density = self.density(pressure, stated), self.declared("grain_density", math.inf)
+        if density <= grain_density:
+            return
+        above = f"{density:.6g} kg/m3 is above the density of the grains, {grain_density:g} kg/m3"
+        if stated > 0.0:
+            message = f"{self.law.name}: density = {above}; no packing is as dense"
+        else:
+            message = (
+                f"{self.law.name}: the initial density {above}: the parameter set's density at {pressure:g} Pa is "
+                "nominal, and so are densities and specific volumes of this test; set density [kg/m3] for others"
+            )
+        warnings.warn(message, InputWarning, stacklevel=2)
 
     def declared(self, name: str, otherwise: float) -> float:
         """A parameter if the law declares it, else the other value."""
