@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from grainlaw.materials import InputError, SimulationError
+from grainlaw.materials.errors import numbers_of
 from grainlaw.mpm_core.failures import LARGEST_INCREMENT, failure_outside, failure_too_small, failure_unsound
 from grainlaw.mpm_core.grid.active_nodes import ActiveNodes, find_active_nodes, no_active_nodes
 from grainlaw.mpm_core.grid.grid import Grid
@@ -35,6 +36,9 @@ from grainlaw.mpm_core.stepping.time_step import (
     signal_bounds,
     strain_rates,
 )
+
+# More than a run can ever take.
+MOST_STEPS = 1e12
 
 
 class Simulation:
@@ -79,6 +83,11 @@ class Simulation:
         self.signal_bounds = [signal_bounds(body.law, body.parameters, body.initial_density) for body in self.bodies]
         self._take_signals(signals)
         first = self.scene.time.step or self.adaptive_step()
+        if not first * MOST_STEPS > scene.time.end:
+            raise InputError(
+                f"time.end = {scene.time.end:g} s takes more than {MOST_STEPS:g} steps of {first:g} s, with signals of "
+                f"{self.signal_speed:g} m/s through cells of {self.grid.cell_size:g} m"
+            )
         self.smallest_step = self.scene.time.smallest_step or (SMALLEST_SHARE * first if first < math.inf else 0.0)
 
     def measure_signals(self) -> None:
@@ -87,7 +96,11 @@ class Simulation:
 
     def _signals_of_points(self) -> list[tuple[float, float]]:
         """Of each body the fastest signal and the fastest point [m/s], in plain Python."""
-        return [(body.largest_signal_speed(), float(np.hypot(*body.velocity).max())) for body in self.bodies]
+        signals = []
+        for body in self.bodies:
+            with numbers_of(body.law.name):
+                signals.append((body.largest_signal_speed(), float(np.hypot(*body.velocity).max())))
+        return signals
 
     def _take_signals(self, signals: list[tuple[float, float]]) -> None:
         self.signal_speed = self._signal_speed(signals, [largest_diffusivity(body) for body in self.bodies])

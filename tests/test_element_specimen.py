@@ -61,8 +61,9 @@ def test_wrong_request_is_refused(parameters, assignments, message):
         prepared("mu_i_lc", parameters, assignments, SHEAR)
 
 
-def test_unreasonable_number_of_steps_is_refused():
-    specimen, settings = prepared("mu_i_lc", None, {"time_step": 1e-12}, SHEAR)
+@pytest.mark.parametrize("time_step", [1e-12, 5e-324])
+def test_unreasonable_number_of_steps_is_refused(time_step):
+    specimen, settings = prepared("mu_i_lc", None, {"time_step": time_step}, SHEAR)
     with pytest.raises(InputError, match="steps; allowed: 1 to"):
         run_element_test(SHEAR, specimen, settings)
 

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from scenes_for_tests import BLOCK, COLUMN, MU_I_LC, call_command_line, write_scene
+from scenes_for_tests import BLOCK, CAM_CLAY, COLUMN, MU_I_LC, call_command_line, write_scene
 
 BOX = {"kind": "rectangle", "lower": [0.3, 0.2], "upper": [0.7, 0.6]}
 SECOND = {
@@ -100,6 +100,14 @@ FAULTS = {
     "shape without bounds": ({"body.0.shape": {"kind": "disc", "center": [1e200, 0.0], "radius": 1e308}},
                              r"body\.0: the shape is inf x inf points .*memory"),
     "more points than memory": ({"body.0.shape.upper": [1e5, 1e5]}, r"body\.0: the shape is 2e\+06 x 2e\+06 points"),
+    "shape beyond the domain": ({"body.0.shape.upper": [5.0, 0.6]},
+                                r"body\.0: the shape is 4\.7 x 0\.4 m large, the domain 1 x 0\.8 m"),
+    "more steps than a run can take": ({"material.linear_elastic.bulk_modulus": 1e35},
+                                       r"time\.end = 0\.1 s takes more than 1e\+12 steps of 2\.\d+e-18 s"),
+    "law without numbers": ({"material": {"modified_cam_clay": CAM_CLAY | {"swelling_index": 8e-9}},
+                             "body.0.material": "modified_cam_clay",
+                             "body.0.initial_stress": {"kind": "uniform", "pressure": 1e3}},
+                            r"modified_cam_clay has no stress or sound speed with these parameters at the start"),
     "shape elsewhere": ({"body.0.shape": {"kind": "disc", "center": [1e300, 0.0], "radius": 1.0}},
                         r"body\.0: the shape lies outside the domain \[0\.0, 0\.0\] to \[1\.0, 0\.8\]"),
     "mesh file": ({"body.0.shape": {"kind": "mesh", "file": "none.vtk"}},

@@ -41,10 +41,10 @@ class LoadingPath:
 
 def steps_of(duration: float, dt: float) -> int:
     """The number of steps of dt [s] that fill a duration [s]. Raises InputError for none or unreasonably many."""
-    steps = round(duration / dt)
-    if not 1 <= steps <= MAXIMUM_STEPS:
-        raise InputError(f"{duration:g} s in steps of {dt:g} s make {steps} steps; allowed: 1 to {MAXIMUM_STEPS}")
-    return steps
+    steps = duration / dt
+    if not 0.5 < steps < MAXIMUM_STEPS + 0.5:
+        raise InputError(f"{duration:g} s in steps of {dt:g} s make {steps:.0f} steps; allowed: 1 to {MAXIMUM_STEPS}")
+    return round(steps)
 
 
 def constant_rate(strain: float, strain_rate: float, dt: float) -> NDArray[np.float64]:

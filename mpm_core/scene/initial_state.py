@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grainlaw.materials import InputError, SymmetricTensor
-from grainlaw.materials.errors import InputWarning
+from grainlaw.materials.errors import InputWarning, numbers_of
 from grainlaw.materials.law import Law
 from grainlaw.mpm_core.body import POINTS_AT_ONCE, Body
 from grainlaw.mpm_core.kernels.positions import put_density, put_positions
@@ -22,6 +22,8 @@ from grainlaw.mpm_core.stepping.peak_memory import physical_memory
 LIGHTEST_PACKING = 100.0
 # At least, while a shape is filled: two copies of the coordinates.
 BYTES_PER_POINT = 32
+# Sizes of the domain along an axis beyond which a shape is refused before its points are counted.
+FARTHEST = 4.0
 # Of stresses that may be stored in single precision.
 STRESS_ROUND_OFF = 1e-6
 
@@ -75,6 +77,12 @@ def _refuse_absurd_size(scene: Scene, number: int, section: BodySection) -> None
             f"body.{number}: the shape is {across:.3g} x {up:.3g} points of {spacing:g} m large, more than fit into "
             "memory; lengths are in metres"
         )
+    domain = np.array(scene.grid.upper) - np.array(scene.grid.lower)
+    if ((upper - lower) > FARTHEST * domain).any():
+        raise InputError(
+            f"body.{number}: the shape is {across * spacing:.3g} x {up * spacing:.3g} m large, the domain "
+            f"{domain[0]:g} x {domain[1]:g} m; lengths are in metres"
+        )
 
 
 def _refuse_overlap(scene: Scene, positions: list[NDArray[np.float64]]) -> None:
@@ -110,7 +118,8 @@ def _build(
     spacing = scene.grid.cell_size / section.points_per_cell**0.5
     points[SXX], points[SYY], points[SZZ] = _initial_stress(section.initial_stress, vertical)
     _warn_without_stiffness(law, parameters, points, f"{scene.source}: {name}")
-    _initialise_state(law, parameters, points)
+    with numbers_of(law.name):
+        _initialise_state(law, parameters, points)
     return Body(name, law, parameters, storage, len(positions), section.density * spacing**2, first_id)
 
 

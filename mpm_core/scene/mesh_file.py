@@ -25,6 +25,7 @@ OUTLINES = {
 }
 NO_AREA = ("vertex", "line")
 FLAT = 1e-9  # of the size of a mesh
+FARTHEST = 1e9  # m
 
 
 def read_cells(file: Path, group: str | None) -> list[Points]:
@@ -64,6 +65,9 @@ def _in_plane(file: Path, blocks: list[Points]) -> list[Points]:
     nodes = np.concatenate([block.reshape(-1, block.shape[2]) for block in blocks])
     if not np.isfinite(nodes).all():
         raise ValueError(f"mesh file {file} has coordinates that are not finite")
+    farthest = float(np.abs(nodes).max())
+    if farthest > FARTHEST:
+        raise ValueError(f"mesh file {file} has a coordinate of {farthest:g}; lengths are in metres")
     size = np.ptp(nodes, axis=0)
     if len(size) > 2 and size[2] > FLAT * size.max():
         low, high = nodes[:, 2].min(), nodes[:, 2].max()

@@ -49,7 +49,7 @@ def run(
             return read_summary(folder)
         refuse_other_laws(folder, [scene.law(body.material) for body in scene.body])
     simulation = built_simulation(scene, threads)
-    _refuse_impossible_steps(simulation)
+    refuse_impossible_steps(simulation)
     text = scene.to_toml()
     with held(folder) if resume else new_folder(folder, text, overwrite=overwrite), _stops_explained(folder):
         clock = go_on(folder, simulation) if resume else Clock()
@@ -121,7 +121,8 @@ def _advance(simulation: Simulation, recorder: Recorder, started: float, progres
     return durations[0] - durations[1] if len(durations) == 2 else 0.0
 
 
-def _refuse_impossible_steps(simulation: Simulation) -> None:
+def refuse_impossible_steps(simulation: Simulation) -> None:
+    """Raises InputError for a step of the scene that is unstable, and for a smallest one above the first."""
     step, stable = simulation.scene.time.step, simulation.critical_time_step()
     first = step or simulation.adaptive_step()
     if simulation.smallest_step > first:

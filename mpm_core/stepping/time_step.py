@@ -31,6 +31,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from grainlaw.materials.errors import numbers_of
 from grainlaw.materials.law import Law
 from grainlaw.materials.tensor import SymmetricTensor, contraction, isotropic, scaled, trace
 from grainlaw.mpm_core.body import Body
@@ -77,7 +78,12 @@ class SignalBounds(NamedTuple):
 
 
 def signal_bounds(law: Law, parameters: Any, density: float) -> SignalBounds:
-    """The bounds of a law for a bulk density [kg/m3], from its functions."""
+    """The bounds of a law for a bulk density [kg/m3], from its functions. Raises InputError where they fail."""
+    with numbers_of(law.name):
+        return _probed(law, parameters, density)
+
+
+def _probed(law: Law, parameters: Any, density: float) -> SignalBounds:
     start = _Probe(isotropic(0.0), density, law.initial_state(isotropic(0.0), density, parameters))
     closed = _moved(law, parameters, start, isotropic(-LARGEST_STRAIN / 3.0))
     open_speed, closed_speed = law.sound_speed(*start, parameters), law.sound_speed(*closed, parameters)

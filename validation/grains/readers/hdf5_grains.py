@@ -33,8 +33,9 @@ def frames(path: Path) -> Iterator[RawFrame]:
                 raise InputError(f"{path} has no group '{FRAMES}' with grains in it")
             for name in sorted(file[FRAMES]):
                 yield _frame(path, name, file[FRAMES][name])
-    except (OSError, RuntimeError) as error:
-        raise InputError(f"{path} cannot be read as HDF5: {str(error).splitlines()[0]}") from None
+    except (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError) as error:
+        # What the library raises for a damaged file, and what the parts of a file of another kind lead to.
+        raise InputError(f"{path} cannot be read as HDF5: {error}") from None
 
 
 def _frame(path: Path, name: str, group: h5py.Group) -> RawFrame:

@@ -58,7 +58,8 @@ def snapshot_of(frame: RawFrame, time: float, mobile_types: tuple[int, ...] | No
             raise InputError(f"{frame.path}: {name} that are no finite numbers")
     if radii.min() <= 0.0:
         raise InputError(f"{frame.path}: a radius of {radii.min():g} m; it must be above 0")
-    diameter = float(sphere_diameters(sphere_volumes(radii)).mean())
+    with np.errstate(over="ignore"):
+        diameter = float(sphere_diameters(sphere_volumes(radii)).mean())
     if diameter > LARGEST_DIAMETER:
         raise InputError(
             f"{frame.path}: the mean grain diameter is {diameter:g} m, allowed up to {LARGEST_DIAMETER:g} m; "
@@ -84,7 +85,7 @@ def mobile_columns(frame: RawFrame, mobile_types: tuple[int, ...] | None) -> dic
     if mobile_types is None:
         if len(found := np.unique(types).tolist()) > 1:
             raise InputError(
-                f"{frame.path} holds grains of the types {[round(kind) for kind in found]}; "
+                f"{frame.path} holds grains of the types {', '.join(f'{kind:g}' for kind in found)}; "
                 "mobile_types in run.json must say which ones count"
             )
         return frame.columns

@@ -1,0 +1,195 @@
+"""Good inputs of every kind, and the functions that read them as the commands do."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+from unittest import mock
+
+import meshio
+import numpy as np
+import tomli_w
+from grains_for_tests import WRITERS, block
+from scenes_for_tests import BLOCK, COLUMN, MU_I_LC, changed
+
+from grainlaw.materials.calibration.data import read_data
+from grainlaw.materials.element.catalogue import get_element_test
+from grainlaw.materials.element.mixed import read_control
+from grainlaw.materials.element.specimen import prepared
+from grainlaw.materials.registry import get_material
+from grainlaw.mpm_core import Scene, simulation
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.stepping import run
+from grainlaw.validation.grains.observation import write_observation
+from grainlaw.validation.grains.observe import observe_folder
+from grainlaw.validation.grains.reference_file import load_reference
+
+
+class Subject(NamedTuple):
+    """A kind of input: writers of good files into an empty folder, each the path of one file; and how it is read."""
+
+    good: dict[str, Callable[[Path], Path]]
+    read: Callable[[Path], object]
+
+
+def set_up(path: Path) -> object:
+    """All that a run does before its kernels are compiled."""
+    with mock.patch.object(Body, "choose_kernels"), mock.patch.object(simulation, "elastic_energy", return_value=0.0):
+        built = run.built_simulation(Scene.load(path), 1)
+        run.refuse_impossible_steps(built)
+        return built.next_step(built.scene.time.end)
+
+
+def _scene(content: dict[str, Any]) -> Callable[[Path], Path]:
+    def write(folder: Path) -> Path:
+        path = folder / "scene.toml"
+        path.write_text(tomli_w.dumps(content))
+        return path
+
+    return write
+
+
+def _parameters(law: str) -> Callable[[Path], Path]:
+    def write(folder: Path) -> Path:
+        path = folder / f"{law}.toml"
+        parameters = next(iter(get_material(law).parameter_sets.values())).parameters
+        path.write_text(tomli_w.dumps(parameters._asdict()))
+        return path
+
+    return write
+
+
+def read_parameters(path: Path) -> object:
+    """For an element test, and for a body of a scene."""
+    name, test = path.stem, get_element_test("simple-shear")
+    specimen, settings = prepared(name, path, {}, test)
+    scene = path.parent / "scene.toml"
+    changes = {
+        "material": {name: {"parameters": path.name}},
+        "body.0.material": name,
+        "body.0.initial_stress": {"kind": "uniform", "pressure": 1000.0},
+    }
+    scene.write_text(tomli_w.dumps(changed(BLOCK, changes)))
+    set_up(scene)
+    return specimen.density(1000.0, settings.density)
+
+
+def _text(name: str, text: str) -> Callable[[Path], Path]:
+    def write(folder: Path) -> Path:
+        path = folder / name
+        path.write_text(text)
+        return path
+
+    return write
+
+
+CONTROL = "time_step = 1e-3\n[[stage]]\nduration = 0.1\nstrain_rate = { yy = -0.01 }\nstress_rate = { xx = 0.0 }\n"
+DATA = "# test = triaxial-drained\n# initial_pressure = 200e3\naxial_strain [1],deviatoric_stress [Pa]\n0.01,1e5\n"
+DATA_OF_TESTS = "test,initial_pressure,axial_strain,deviatoric_stress [Pa],standard_error_deviatoric_stress [Pa]\n" + (
+    "triaxial-drained,1e5,0.01,1e5,1e3\ntriaxial-undrained,2e5,0.02,,\n"
+)
+SURFACES = "# grain_diameter = 0.003\nt,x,h\n" + "".join(
+    f"{t},{x},{max(0.0, 0.2 - abs(x) / (1 + t))}\n" for t in (0.0, 0.5) for x in (-0.3, -0.1, 0.0, 0.1, 0.3)
+)
+
+
+def _dumps(form: str, spoils: str) -> Callable[[Path], Path]:
+    """A run of a few grains in a format, of which `run.json` or the first dump is to be spoilt."""
+
+    def write(folder: Path) -> Path:
+        description: dict[str, Any] = {"depth": 0.06, "grain_density": 2450.0, "time_step": 1e-4}
+        files = [WRITERS[form](folder, number, block(0.03, 0.03)) for number in range(2)]
+        frames = [{"file": file, "time": 0.1 * number} for number, file in enumerate(files)]
+        (folder / "run.json").write_text(json.dumps({**description, "frames": frames}))
+        return folder / (spoils or files[0])
+
+    return write
+
+
+def _observation(folder: Path) -> Path:
+    _dumps("hdf5", "")(folder)
+    path = folder / "reference.h5"
+    write_observation(path, observe_folder(folder))
+    return path
+
+
+NODES = np.array([[0.3, 0.2], [0.5, 0.2], [0.7, 0.2], [0.3, 0.6], [0.5, 0.6], [0.7, 0.6]])
+QUADS = np.array([[0, 1, 4, 3], [1, 2, 5, 4]])
+
+
+def _mesh(name: str, **options: Any) -> Callable[[Path], Path]:
+    def write(folder: Path) -> Path:
+        path = folder / name
+        mesh = meshio.Mesh(np.column_stack([NODES, np.zeros(6)]), [("quad", QUADS)])
+        mesh.write(path, **options)
+        return path
+
+    return write
+
+
+def read_mesh(path: Path) -> object:
+    """As the shape of a body."""
+    scene = path.parent / "scene.toml"
+    scene.write_text(tomli_w.dumps(changed(BLOCK, {"body.0.shape": {"kind": "mesh", "file": path.name}})))
+    return set_up(scene)
+
+
+MANY = changed(
+    COLUMN,
+    {
+        "grid.cell_size": 0.05,
+        "grid.lower": [0.0, 0.0],
+        "boundary": {"left": "periodic", "right": "periodic", "bottom": {"kind": "friction", "coefficient": 0.5}},
+        "body.0.initial_stress": {"kind": "table", "depth": [0.0, 1.0], "vertical_stress": [0.0, 1.5e4]},
+        "body.0.shape": {"kind": "polygon", "vertices": [[1.4, 0.0], [1.8, 0.0], [1.6, 0.8]]},
+        "transfer": {"scheme": "affine_flip", "basis": "quadratic", "time_constant": 0.01},
+        "sleep": {"speed": 1e-3, "window": 0.1, "start": 0.5},
+        "time": {"end": 0.3, "safety": 0.4, "smallest_step": 1e-9},
+        "output": {"interval": 0.05, "pictures": False, "fields": ["velocity"]},
+    },
+)
+TWO = changed(
+    BLOCK,
+    {
+        "material.mu_i_lc": MU_I_LC,
+        "body": [
+            *BLOCK["body"],
+            {
+                "material": "mu_i_lc",
+                "density": 1500.0,
+                "velocity": [0.1, 0.0],
+                "points_per_cell": 9,
+                "shape": {"kind": "disc", "center": [0.85, 0.4], "radius": 0.1},
+                "initial_stress": {"kind": "geostatic", "surcharge": 10.0},
+            },
+        ],
+        "gravity": [0.0, -9.81],
+    },
+)
+
+
+def subjects() -> dict[str, Subject]:
+    """All kinds of input."""
+    laws = ("mu_i_lc", "modified_cam_clay", "mu_i_mcc", "mu_i_phi_i", "newtonian", "neo_hookean", "drucker_prager")
+    dumps = {f"{form} {spoils or 'dump'}": _dumps(form, spoils) for form in WRITERS for spoils in ("", "run.json")}
+    meshes = {
+        "msh 2.2": _mesh("body.msh", file_format="gmsh22", binary=False),
+        "msh 2.2 binary": _mesh("body.msh", file_format="gmsh22", binary=True),
+        "msh 4.1": _mesh("body.msh", file_format="gmsh", binary=False),
+        "vtk": _mesh("body.vtk", binary=False),
+        "vtu": _mesh("body.vtu", binary=False),
+    }
+    clay = get_material("modified_cam_clay")
+    return {
+        "scene": Subject({"many": _scene(MANY), "two": _scene(TWO), "column": _scene(COLUMN)}, set_up),
+        "parameters": Subject({law: _parameters(law) for law in laws}, read_parameters),
+        "data": Subject(
+            {"one": _text("data.csv", DATA), "tests": _text("data.csv", DATA_OF_TESTS)},
+            lambda path: read_data(path, clay),
+        ),
+        "control": Subject({"control": _text("control.toml", CONTROL)}, lambda path: read_control(path).steps),
+        "surface": Subject({"surface": _text("surface.csv", SURFACES)}, load_reference),
+        "dump": Subject(dumps, lambda path: observe_folder(path.parent)),
+        "observation": Subject({"hdf5": _observation}, load_reference),
+        "mesh": Subject(meshes, read_mesh),
+    }
