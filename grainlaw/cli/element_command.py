@@ -55,10 +55,11 @@ def element(
         prepared_tests.append(prepared(name, set_name or parameters, values, chosen))
     results = []
     for specimen, settings in prepared_tests:
-        specimen.warn_about_density(settings.initial_pressure, settings.density)
         start = time.perf_counter()
         results.append(run_element_test(chosen, specimen, settings))
         _print_result(chosen, results[-1], time.perf_counter() - start)
+        # After the test, so that one that fails is one line.
+        specimen.warn_about_density(settings.initial_pressure, settings.density)
     if out:
         results[0].write_csv(out)
         typer.echo(f"wrote {out}")
