@@ -215,9 +215,11 @@ def test_what_cannot_be_resumed_is_said_in_one_line(tmp_path, monkeypatch, capsy
     assert ({path.name: path.read_bytes() for path in out.iterdir()} if out.is_dir() else {}) == before
 
 
-@pytest.mark.parametrize("output", ["vtu", "both"])
-@pytest.mark.parametrize("stated", [True, False], ids=["intervals stated", "intervals by default"])
-@pytest.mark.parametrize("first_end", [0.06, 0.07], ids=["end on a frame", "end between frames"])
+@pytest.mark.parametrize(
+    ("output", "stated", "first_end"),
+    [("vtu", True, 0.06), ("both", True, 0.07), ("vtkhdf", False, 0.07)],
+    ids=["end on a frame", "end between frames", "intervals by default"],
+)
 def test_a_longer_run_goes_on_to_the_same_bits_as_one_that_ran_through(tmp_path, output, stated, first_end):
     settings = {"pictures": False, **OUTPUTS[output]}
     intervals = {"interval": 0.03, "history_interval": 0.004} if stated else {}
