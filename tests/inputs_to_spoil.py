@@ -19,6 +19,12 @@ from grainlaw.materials.element.specimen import prepared
 from grainlaw.materials.registry import get_material
 from grainlaw.mpm_core import Scene, simulation
 from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.output.frame import Field, Frame
+from grainlaw.mpm_core.output.frame_series import FrameSeries
+from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, HistoryWriter
+from grainlaw.mpm_core.output.quantities import write_quantities
+from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.output.summary import FinalState, RunSummary, write_summary
 from grainlaw.mpm_core.stepping import run
 from grainlaw.validation.grains.observation import write_observation
 from grainlaw.validation.grains.observe import observe_folder
@@ -134,6 +140,41 @@ def read_mesh(path: Path) -> object:
     return set_up(scene)
 
 
+RUN_FILES = ("scene.toml", "summary.json", "history.csv", "quantities.csv", "run.pvd", "points_000000.vtu")
+SUMMARY = RunSummary(
+    **dict.fromkeys(("scene", "material", "version"), "a"),
+    **dict.fromkeys(("points", "cells", "steps", "peak_memory_bytes", "threads"), 1),
+    **dict.fromkeys(("simulated_time", "wall_time", "compile_time", "point_steps_per_second"), 1.0),
+    final=FinalState(runout=0.1, height=0.1, center_of_mass_height=0.05, kinetic_energy=0.0),
+    energy_balance_error=0.01,
+    limited={"points_at_a_wall": 1},
+)
+
+
+def _run(spoils: str) -> Callable[[Path], Path]:
+    """The folder of a finished run, of which one file is to be spoilt."""
+
+    def write(folder: Path) -> Path:
+        _scene(BLOCK)(folder)
+        frames, history = FrameSeries(folder), HistoryWriter(folder)
+        for step in range(2):
+            fields = (Field("pressure", "Pa", "mean pressure", np.arange(6.0)),)
+            frames.write(Frame(0.1 * step, step, np.column_stack([NODES, np.zeros(6)]), fields))
+            history.append({column.name: step for column in HISTORY_COLUMNS})
+        write_quantities(folder, fields)
+        write_summary(folder, SUMMARY)
+        return folder / spoils
+
+    return write
+
+
+def read_run(path: Path) -> object:
+    """All parts of a run's folder."""
+    run_folder = RunFolder(path.parent)
+    parts = run_folder.scene, run_folder.summary, run_folder.history["t"], run_folder.frame_times
+    return [*parts, *(run_folder.load_frame(number).field("pressure") for number in range(len(run_folder.frame_files)))]
+
+
 MANY = changed(
     COLUMN,
     {
@@ -192,4 +233,5 @@ def subjects() -> dict[str, Subject]:
         "dump": Subject(dumps, lambda path: observe_folder(path.parent)),
         "observation": Subject({"hdf5": _observation}, load_reference),
         "mesh": Subject(meshes, read_mesh),
+        "run": Subject({name: _run(name) for name in RUN_FILES}, read_run),
     }

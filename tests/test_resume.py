@@ -83,7 +83,7 @@ def kill_in_the_middle(process, out, after):
     assert process.wait() == -signal.SIGKILL
 
 
-@pytest.mark.parametrize(("output", "precision"), [("vtu", "double"), ("vtu", "single"), ("both", "double")])
+@pytest.mark.parametrize(("output", "precision"), [("vtu", "double"), ("vtkhdf", "single"), ("both", "double")])
 def test_a_killed_run_goes_on_to_the_same_bits(tmp_path, monkeypatch, capsys, output, precision):
     scene_file = write_scene(tmp_path / "scene.toml", with_output(output, {**FINE, "precision": precision}))
     whole, killed = tmp_path / "whole", tmp_path / "killed"

@@ -64,5 +64,5 @@ def read_collection(folder: Path) -> tuple[FrameFile, ...]:
     try:
         entries = ElementTree.parse(path).getroot().iter("DataSet")
         return tuple(FrameFile(float(entry.attrib["timestep"]), folder / entry.attrib["file"]) for entry in entries)
-    except (ElementTree.ParseError, KeyError, ValueError) as error:
+    except (ElementTree.ParseError, LookupError, ValueError) as error:
         raise InputError(f"{path} cannot be read as a ParaView collection: {error}") from error

@@ -100,14 +100,13 @@ def read_history(folder: Path) -> NDArray[Any]:
     path = folder / HISTORY_NAME
     if not path.is_file():
         raise InputError(f"{folder} holds no {HISTORY_NAME}")
-    lines = _complete_lines(path)
-    if not lines:
-        raise InputError(f"{path} is empty")
-    dtype = np.dtype([(name, _TYPES.get(name, float)) for name in lines[0].strip().split(",")])
-    if len(lines) == 1:
-        return np.empty(0, dtype)
     try:
-        return np.loadtxt(lines[1:], delimiter=",", dtype=dtype, ndmin=1)
+        lines = _complete_lines(path)
+        if not lines:
+            raise InputError(f"{path} is empty")
+        names = lines[0].strip().split(",")
+        dtype = np.dtype([(name, _TYPES.get(name, float)) for name in names])
+        return np.loadtxt(lines[1:], delimiter=",", dtype=dtype, ndmin=1) if len(lines) > 1 else np.empty(0, dtype)
     except ValueError as error:
         raise InputError(f"{path} cannot be read: {error}") from error
 

@@ -9,7 +9,7 @@ import io
 from collections.abc import Iterable
 from pathlib import Path
 
-from grainlaw.materials import atomic
+from grainlaw.materials import InputError, atomic
 from grainlaw.mpm_core.output.frame import Field
 from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, HISTORY_NAME
 
@@ -28,10 +28,16 @@ def write_quantities(folder: Path, fields: Iterable[Field]) -> None:
 
 
 def read_field_documentation(folder: Path) -> dict[str, tuple[str, str]]:
-    """Unit and doc of each point field by its name; empty where the table is missing."""
+    """Unit and doc of each point field by its name; empty where the table is missing.
+
+    Raises InputError where it cannot be read.
+    """
     path = folder / QUANTITIES_NAME
     if not path.is_file():
         return {}
-    with path.open(newline="") as table:
-        rows = [row for row in csv.DictReader(table) if row["file"] == POINT_FILES]
-    return {row["name"]: (row["unit"], row["doc"]) for row in rows}
+    try:
+        with path.open(newline="") as table:
+            rows = [row for row in csv.DictReader(table) if row["file"] == POINT_FILES]
+        return {row["name"]: (row["unit"], row["doc"]) for row in rows}
+    except (KeyError, ValueError, csv.Error) as error:
+        raise InputError(f"{path} cannot be read: {error}") from error

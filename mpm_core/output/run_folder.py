@@ -18,6 +18,8 @@ from grainlaw.mpm_core.output.summary import RunSummary, read_summary
 from grainlaw.mpm_core.output.vtu import read_vtu
 
 SCENE_NAME = "scene.toml"
+# Columns of the history that every picture of a run needs.
+DRAWN = ("t", "runout", "height", "center_of_mass_height")
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,9 @@ class RunFolder:
         history = read_history(self.path)
         if not len(history):
             raise InputError(f"the history of {self.path} holds no row yet")
+        for name in DRAWN:
+            if name not in (history.dtype.names or ()):
+                raise InputError(f"the history of {self.path} has no column '{name}'")
         return history
 
     @cached_property

@@ -109,7 +109,7 @@ def is_observation(path: Path) -> bool:
     try:
         with h5py.File(path) as file:
             return FORMAT_ATTRIBUTE in file.attrs
-    except OSError:
+    except (OSError, RuntimeError, KeyError):
         return False
 
 
@@ -129,8 +129,8 @@ def read_observation(path: Path) -> Observation:
                 snapshot_times=_read(file, "snapshots/time"),
                 snapshots={name: _read(file, f"snapshots/{name}") for name in file["snapshots"] if name != "time"},
             )
-    except (OSError, RuntimeError, KeyError, ValueError) as error:
-        raise InputError(f"{path} cannot be read as an observation: {str(error).splitlines()[0]}") from None
+    except (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError) as error:
+        raise InputError(f"{path} cannot be read as an observation: {error}") from None
     if read.surface.shape != (len(read.times), len(read.x)):
         raise InputError(
             f"{path}: surface has the shape {read.surface.shape}, expected {(len(read.times), len(read.x))}"

@@ -14,6 +14,9 @@ from grainlaw.validation.grains.readers.raw_frame import RawFrame
 from grainlaw.validation.grains.readers.text_file import is_packed
 
 ENDINGS = (".vtk", ".vtp", ".vtu")
+# Of a file, where the counts stand that are checked; and the most points that one may hold.
+START, MOST = 2**16, 2**31 - 1
+_COUNT = re.compile(rb"\b(NumberOf\w+(?==\")|(?:POINTS|CELLS|VERTICES|POINT_DATA)(?= ))[= ]\"?([^\" \n]*)")
 _LAST_NUMBER = re.compile(r"(\d+)\D*$")
 
 
@@ -44,6 +47,15 @@ def frames(path: Path) -> Iterator[RawFrame]:
     yield RawFrame(path, settled(columns), time, int(number[1]) if number else None, complete=True)
 
 
+def _refuse_strange_counts(path: Path) -> None:
+    """Raises InputError for a number of points, cells or components that is none, which VTK would not survive."""
+    with path.open("rb") as file:
+        start = file.read(START)
+    for name, text in _COUNT.findall(start):
+        if not (text.strip().isdigit() and int(text) <= MOST):
+            raise InputError(f"{path} cannot be read as VTK: {name.decode()} is {text.decode(errors='replace')}")
+
+
 def _read(path: Path) -> Any:
     # pyvista prints VTK's own complaints; what counts is whether points came out.
     import pyvista
@@ -52,11 +64,12 @@ def _read(path: Path) -> Any:
         raise InputError(f"{path} is empty")
     if is_packed(path):
         raise InputError(f"{path} is packed by gzip, which VTK does not read; unpack it first")
+    _refuse_strange_counts(path)
     try:
         with pyvista.vtk_verbosity("off"):
             data = pyvista.read(path)
     except Exception as error:
-        raise InputError(f"{path} cannot be read as VTK: {str(error).splitlines()[0]}") from None
+        raise InputError(f"{path} cannot be read as VTK: {error}") from None
     if getattr(data, "n_points", 0) == 0:
         raise InputError(f"{path} holds no points; is it truncated?")
     return data
