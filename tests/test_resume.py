@@ -95,7 +95,9 @@ def test_a_killed_run_goes_on_to_the_same_bits(tmp_path, monkeypatch, capsys, ou
     assert call_command_line(monkeypatch, "run", scene_file, "--out", killed, "--resume", "--threads", 1) == 0
     assert "t = 0.6 s" in capsys.readouterr().out
     assert_same_runs(whole, killed)
-    np.testing.assert_allclose([file.time for file in read_collection(killed)], 0.03 * np.arange(21), atol=1e-12)
+    if OUTPUTS[output]["vtu"]:
+        times = [file.time for file in read_collection(killed)]
+        np.testing.assert_allclose(times, 0.03 * np.arange(21), atol=1e-12)
 
 
 class StoppedError(Exception):
