@@ -1,6 +1,7 @@
 """Spoilt inputs of every kind: refused in one line, or read; no traceback, no warning of a library, no hang."""
 
 import pytest
+from grains_for_tests import write_run
 from inputs_to_spoil import subjects
 from malformed import FAULTS, attempt, trials
 
@@ -30,6 +31,18 @@ def test_spoilt_inputs_are_refused_in_a_line_or_read(tmp_path):
 def test_a_message_is_one_line_whatever_it_quotes(tmp_path):
     with pytest.raises(InputError, match=r"/a b does not exist$"):
         load_reference(tmp_path / "a\nb")
+
+
+@pytest.mark.parametrize(("column", "message"), [("vx", r"a velocity of 1e\+200"), ("x", r"a position of 1e\+200")])
+def test_numbers_of_no_grains_are_refused(tmp_path, column, message):
+    folder = write_run(tmp_path / "run", "csv")
+    path = folder / "grains0.csv"
+    header, first, *rest = path.read_text().splitlines()
+    cells = first.split(",")
+    cells[header.split(",").index(column)] = "1e200"
+    path.write_text("\n".join([header, ",".join(cells), *rest]))
+    with pytest.raises(InputError, match=message):
+        load_reference(folder)
 
 
 @pytest.mark.parametrize("error", [KeyError("x"), InputError("")])

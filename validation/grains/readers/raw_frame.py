@@ -13,6 +13,8 @@ from grainlaw.validation.grains.snapshot import Array, GrainSnapshot, sphere_dia
 
 # Larger grains than this are taken for lengths in millimetres.
 LARGEST_DIAMETER = 1.0
+# Positions [m] and velocities [m/s] beyond this are those of no grains.
+LARGEST = 1e9
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,10 @@ def snapshot_of(frame: RawFrame, time: float, mobile_types: tuple[int, ...] | No
     for name, values in (("positions", positions), ("radii", radii)):
         if not np.isfinite(values).all():
             raise InputError(f"{frame.path}: {name} that are no finite numbers")
+    for name, values in (("a position", positions), ("a velocity", velocities)):
+        largest = float(np.nan_to_num(np.abs(values)).max())
+        if largest > LARGEST:
+            raise InputError(f"{frame.path}: {name} of {largest:g} in SI units; is the file damaged?")
     if radii.min() <= 0.0:
         raise InputError(f"{frame.path}: a radius of {radii.min():g} m; it must be above 0")
     with np.errstate(over="ignore"):
