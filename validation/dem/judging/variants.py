@@ -40,6 +40,10 @@ def _of_delayed_dilatancy(name: str, says: str, aspect_ratio: float, **changes: 
     return Variant(f"mu(I), phi(I), {name}", says, law="mu_i_phi_i", aspect_ratio=aspect_ratio, **changes)
 
 
+def _of_state(name: str, says: str, aspect_ratio: float, **changes: Any) -> Variant:
+    return Variant(f"mu(I), state, {name}", says, law="mu_i_state", aspect_ratio=aspect_ratio, **changes)
+
+
 # A law that is near enough must lose its verdict by a mistake; gravity 12 makes it 10 % early and leaves the pile as it
 # is, which no band of t50 that is twice 5 % wide can call more than that.
 CONTROLS = (
@@ -52,6 +56,15 @@ CONTROLS = (
             ("friction 30 % too low", "a wrong material", {"factors": dict.fromkeys(FRICTIONS, 0.7)}),
             ("gravity 12 m/s2", "a wrong clock", {"changes": {"gravity": [0.0, -12.0]}}),
             ("flat floor", "a wrong floor", {"floor": "flat"}),
+        )
+    ),
+    *(
+        _of_state(name, says, 2.0, noticed=Verdict.ACCEPTABLE, **mistake)
+        for name, says, mistake in (
+            ("friction 30 % too low", "a wrong material", {"factors": dict.fromkeys(FRICTIONS, 0.7)}),
+            ("gravity 12 m/s2", "a wrong clock", {"changes": {"gravity": [0.0, -12.0]}}),
+            ("no dilatancy", "strength and volume without packing", {"factors": {"dilatancy_coefficient": 0.0}}),
+            ("all dilatancy in the friction", "N = 0", {"factors": {"hidden_dilatancy": 0.0}}),
         )
     ),
 )
@@ -86,6 +99,10 @@ LIMITS = (
     _of_delayed_dilatancy("a = 6, twice the cell", "resolution", 6.0, cell_factor=2.0),
     _of_delayed_dilatancy("a = 6, half the cell", "resolution", 6.0, cell_factor=0.5),
     _of_delayed_dilatancy("a = 6, no slip at the floor", "floor", 6.0, changes=NO_SLIP),
+    _of_state("a = 2, as judged", "the law itself, for comparison", 2.0),
+    _of_state("a = 2, half the cell", "resolution", 2.0, cell_factor=0.5),
+    _of_state("a = 2, twice the cell", "resolution", 2.0, cell_factor=2.0),
+    _of_state("a = 6, as judged", "the law itself, for comparison", 6.0),
 )
 
 
