@@ -1,4 +1,5 @@
 # make demo    set up, run the paper's column collapse with three materials on a coarse grid, compare them
+# make figure2 set up, run the six columns of the paper's Figure 2, ours and as published, and compare them; minutes
 # make test    set up, run the tests
 # make lint    set up, check style and types
 # make bench   set up, time the library against a yardstick and the machine; about half an hour
@@ -12,7 +13,10 @@ INSTALLED := $(VENV)/.installed
 DEMO := runs/demo
 MATERIALS := mu_i_lc mcc_ocr1 mcc_ocr4
 
-.PHONY: demo test lint docs bench
+FIGURE2 := runs/figure2
+COLUMNS := $(MATERIALS) mu_i_lc_published mcc_ocr1_published mcc_ocr4_published
+
+.PHONY: demo figure2 test lint docs bench
 
 $(INSTALLED): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and \
@@ -30,6 +34,13 @@ demo: $(INSTALLED)
 	@echo "pictures:  $(DEMO)/comparison/*.png, $(DEMO)/*/*.png"
 	@echo "ParaView:  $(MATERIALS:%=$(DEMO)/%/run.pvd)"
 	@echo "summaries: $(MATERIALS:%=$(DEMO)/%/summary.json)"
+
+figure2: $(INSTALLED)
+	@for column in $(COLUMNS); do \
+		$(BIN)/grainlaw run scenes/collapse_$$column.toml --out $(FIGURE2)/$$column --overwrite || exit 1; \
+	done
+	@$(BIN)/grainlaw compare $(COLUMNS:%=$(FIGURE2)/%) --out $(FIGURE2)/comparison
+	@echo "pictures:  $(FIGURE2)/comparison/*.png"
 
 # A file stays with one worker, so that what its tests share is made once; tests/conftest.py says which come first.
 test: $(INSTALLED)

@@ -34,8 +34,8 @@ from grainlaw.mpm_core.layout import (
     GRADIENT,
     LXX,
     NAMES,
-    NEIGHBOUR_MEAN,
-    OVERFILL,
+    NEIGHBOUR_DENSITY,
+    NEIGHBOUR_PRESSURE,
     REMAINDERS,
     SXX,
     SXY,
@@ -166,16 +166,15 @@ class Body:
         """In what precision the law is computed."""
         return self.precision if self.law.holds_in_single else "double"
 
-    def choose_kernels(self, basis: Basis, shifts_points: bool) -> None:
+    def choose_kernels(self, basis: Basis) -> None:
         """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""
-        couples = self.is_loose
         self._p2g = make_p2g(basis, self.precision)
-        self._g2p = make_g2p(basis, False, False, self.precision)
-        self._coupling_g2p = make_g2p(basis, couples, shifts_points and couples, self.precision)
+        self._g2p = make_g2p(basis, False, self.precision)
+        self._coupling_g2p = make_g2p(basis, self.is_loose, self.precision)
         law = pointwise_law(self.law, self._of_law)
         self._stress_pass = make_stress_pass(law, self._keeps_shear_strain, self.precision)
         no_points = self.storage, 0, 1.0, self._law_parameters
-        explained(self.law, self._stress_pass, *no_points, 0.0, 0.0, 0.0, 1, self.stress_reports[:0])
+        explained(self.law, self._stress_pass, *no_points, 0.0, 0.0, 1, self.stress_reports[:0])
 
     @cached_property
     def _law_parameters(self) -> tuple[Any, ...]:
@@ -197,10 +196,8 @@ class Body:
     affine = RowsView(AXX, (2, 2), "The velocity gradient A_ij that a point brings to the grid [1/s], shape (2, 2, n).")
     stress = RowsView(SXX, (4,), "Stress xx, yy, zz, xy [Pa], tension-positive, shape (4, n).")
     density = RowsView(DENSITY, (), "Bulk density [kg/m3], shape (n,).")
-    neighbour_mean = RowsView(
-        NEIGHBOUR_MEAN, (), "Pressure [Pa] or, without stress, density [kg/m3] around, shape (n,)."
-    )
-    overfill = RowsView(OVERFILL, (), "Overfill of the nodes around [1], shape (n,).")
+    neighbour_pressure = RowsView(NEIGHBOUR_PRESSURE, (), "Mean pressure around [Pa], shape (n,).")
+    neighbour_density = RowsView(NEIGHBOUR_DENSITY, (), "Bulk density around [kg/m3], shape (n,).")
 
     @property
     def pressure(self) -> NDArray[np.float64]:
@@ -287,14 +284,13 @@ class Body:
         """Bring points that left through a periodic side back in through the other."""
         put_coordinate(self.points, axis, lower + np.mod(coordinate_of(self.points, axis) - lower, period))
 
-    def update_stress(self, dt: float, coupled_time: float = 0.0, exchange: float = 0.0, threads: int = 1) -> None:
+    def update_stress(self, dt: float, coupled_time: float = 0.0, threads: int = 1) -> None:
         """Rotate the stress, bring the density forward, call the law.
 
-        `coupled_time` is the time [s] for which the volumes of loose grains are coupled in this step, `exchange` that
-        time over the FLIP blend time of the transfer.
+        `coupled_time` is the time [s] for which the volumes of loose grains are coupled in this step.
         """
         coupled_time, points = coupled_time if self.is_loose else 0.0, (self.storage, self.awake, self.point_mass)
-        self._stress_pass(*points, self._law_parameters, dt, coupled_time, exchange, threads, self.stress_reports)
+        self._stress_pass(*points, self._law_parameters, dt, coupled_time, threads, self.stress_reports)
 
     def state(self, name: str) -> NDArray[np.float64]:
         """A state variable of all points, in their present order. Raises InputError for an unknown name."""

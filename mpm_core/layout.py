@@ -17,7 +17,7 @@ NAMES = (
     *("gradient_xx", "gradient_xy", "gradient_yx", "gradient_yy"),
     *("affine_xx", "affine_xy", "affine_yx", "affine_yy"),
     *("stress_xx", "stress_yy", "stress_zz", "stress_xy"),
-    *("density", "neighbour_mean", "overfill"),
+    *("density", "neighbour_pressure", "neighbour_density"),
 )
 X, Y = 0, 1
 VX, VY = 2, 3
@@ -26,9 +26,8 @@ AXX, AXY, AYX, AYY = 8, 9, 10, 11
 GRADIENT, AFFINE = slice(4, 8), slice(8, 12)
 SXX, SYY, SZZ, SXY = 12, 13, 14, 15
 DENSITY = 16
-# What a point gathers of the material around it: the mean pressure, or without stress of its own the mean density; and
-# the overfill.
-NEIGHBOUR_MEAN, OVERFILL = 17, 18
+# What a point gathers of the material around it.
+NEIGHBOUR_PRESSURE, NEIGHBOUR_DENSITY = 17, 18
 FIRST_STATE = len(NAMES)
 
 # From the end, in single precision.

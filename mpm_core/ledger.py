@@ -11,8 +11,9 @@ class Ledger:
     last step's rise and work is still to come. A balance of energies at different times would be wrong by the work of
     half a step.
 
-    `wall_friction` is the part of `wall_work` that sliding dissipates. The initial elastic energy is NaN where a law
-    does not state its energy.
+    `volume_projection` is the part of the potential energy that points gained by being moved apart. `wall_friction` is
+    the part of `wall_work` that sliding dissipates. The initial elastic energy is NaN where a law does not state its
+    energy.
     """
 
     kinetic: float
@@ -22,6 +23,7 @@ class Ledger:
     internal_work: float = 0.0
     wall_work: float = 0.0
     wall_friction: float = 0.0
+    volume_projection: float = 0.0
     rise_to_come: float = 0.0
     work_to_come: float = 0.0
 
@@ -32,10 +34,16 @@ class Ledger:
         self.internal_work += self.work_to_come + 0.5 * worked
         self.rise_to_come, self.work_to_come = 0.5 * risen, 0.5 * worked
 
+    def count_projection(self, raised: float) -> None:
+        """Take in what the points rose by being moved apart [J/m]."""
+        self.potential += raised
+        self.volume_projection += raised
+
     @property
     def numerical_dissipation(self) -> float:
         """What is left of the balance: energy that transfers and time integration took (or gave, if negative)."""
-        return self.initial_kinetic - self.kinetic - self.potential - self.internal_work - self.wall_work
+        given = self.initial_kinetic + self.volume_projection
+        return given - self.kinetic - self.potential - self.internal_work - self.wall_work
 
     @property
     def kinetic_at_end(self) -> float:

@@ -12,6 +12,7 @@ from grainlaw.mpm_core.failures import LARGEST_INCREMENT, failure_outside, failu
 from grainlaw.mpm_core.grid.active_nodes import ActiveNodes, find_active_nodes, no_active_nodes
 from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.grid.periodic import join_periodic
+from grainlaw.mpm_core.grid.volume_projection import LONGEST_UNPROJECTED, project_volumes
 from grainlaw.mpm_core.kernels.body_force import BodyForce, scatter_body_force
 from grainlaw.mpm_core.kernels.elastic_energy import elastic_energy
 from grainlaw.mpm_core.kernels.grid_update import clear_nodes, update_nodes
@@ -56,14 +57,14 @@ class Simulation:
         self.basis = BASES[scene.transfer.basis]
         self.periodic_axes = _periodic_axes(scene)
         size = (scene.grid.lower, scene.grid.cells, scene.grid.cell_size)
-        self.grid = Grid(*size, self.periodic_axes, self.basis.wall_node_fraction, scene.precision)
+        self.grid = Grid(*size, self.periodic_axes, scene.precision)
         self.fields = chosen_fields(scene)
         self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
         signals = self._signals_of_points()
         refuse_coarse_stress(self.bodies, signals, scene.gravity)
         started = time.perf_counter()
         for body in self.bodies:
-            body.choose_kernels(self.basis, scene.transfer.spreading)
+            body.choose_kernels(self.basis)
         initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
         self.walls = _walls(scene)
@@ -73,10 +74,13 @@ class Simulation:
         self.last_step = 0.0
         self.steps = 0
         self.drift = math.inf
+        self.drift_unprojected = 0.0
         self.active = no_active_nodes(self.grid)
         self.wall_clearance = self._wall_clearance()
         kinetic = sum(0.5 * body.point_mass * float((body.velocity**2).sum()) for body in self.bodies)
         self.ledger = Ledger(kinetic, kinetic, initial_elastic)
+        self.projects_volumes = scene.transfer.volume_projection and any(body.is_loose for body in self.bodies)
+        self.ways_bounded = 0
         self.sleep = self._sleep()
         # No signal is slower than a fall through one cell, for material without stiffness.
         self.free_fall_speed = math.sqrt(math.hypot(*scene.gravity) * self.grid.cell_size)
@@ -113,6 +117,7 @@ class Simulation:
         the next, however long that is: with less, energy would come from steps that shrink as a body stiffens.
         """
         couples_volumes = self.steps % STEPS_PER_COUPLING == 0
+        self._project_volumes_if_drifted()
         self._sort_if_drifted()
         self._clear_nodes()
         self._p2g()
@@ -151,9 +156,8 @@ class Simulation:
 
     def _update_stress(self, dt: float, couples_volumes: bool) -> None:
         coupled_time = STEPS_PER_COUPLING * dt if couples_volumes else 0.0
-        exchange = coupled_time / self.scene.transfer.time_constant
         for body in self.bodies:
-            body.update_stress(dt, coupled_time, exchange, self.threads)
+            body.update_stress(dt, coupled_time, self.threads)
 
     def advance_to(self, time: float) -> None:
         """Step to a time [s], with the steps of the scene.
@@ -221,8 +225,7 @@ class Simulation:
 
     def _flip_fraction(self, dt: float) -> float:
         """The share of the unresolved velocity that outlives a step."""
-        transfer = self.scene.transfer
-        return math.exp(-dt / transfer.time_constant) if transfer.scheme == "affine_flip" else 0.0
+        return math.exp(-dt / self.scene.blend_time) if self.scene.blend_time > 0.0 else 0.0
 
     def _clear_nodes(self) -> None:
         """Leave on the nodes only what sleeping points bring."""
@@ -235,10 +238,26 @@ class Simulation:
         if self.drift > LONGEST_DRIFT * self.grid.cell_size:
             self._sort()
 
-    def _sort(self) -> None:
-        for body in self.bodies:
-            for axis in self.periodic_axes:
+    def _project_volumes_if_drifted(self) -> None:
+        """Let points leave each cell the room it has, when the fastest has drifted far enough since that was done."""
+        if self.projects_volumes and self.drift_unprojected > LONGEST_UNPROJECTED * self.grid.cell_size:
+            self._wrap()
+            projected = project_volumes(
+                self.bodies, self.grid, self.periodic_axes, self.scene.gravity, self.wall_clearance.gaps()
+            )
+            self.ledger.count_projection(projected.raised)
+            self.ways_bounded += projected.bounded
+            self.drift += projected.longest_way
+            self.drift_unprojected = 0.0
+
+    def _wrap(self) -> None:
+        for axis in self.periodic_axes:
+            for body in self.bodies:
                 body.wrap(axis, self.grid.lower[axis], self.grid.upper[axis] - self.grid.lower[axis])
+
+    def _sort(self) -> None:
+        self._wrap()
+        for body in self.bodies:
             body.sort(self.grid, self.basis)
         self.drift = 0.0
         self.find_active_nodes()
@@ -283,6 +302,7 @@ class Simulation:
         whole = together(reports)
         self._refuse_lost_points(whole)
         self.drift += dt * whole.fastest
+        self.drift_unprojected += dt * whole.fastest
         self.strain_rate = whole.increment / dt
         signals = [
             (max(report.signal_speed, body.signal_speed_asleep), report.fastest)

@@ -29,16 +29,17 @@ def test_it_sets_what_the_scene_leaves_open():
 @pytest.mark.parametrize(
     ("accuracy", "width", "most"), [("3%", 0.2, 0.2 / 32), ("3%", 1.0, 1 / 68), ("1%", 1.0, 1 / 96)]
 )
-def test_fine_settings_resolve_width_and_size_and_let_the_transfer_follow_the_cells(accuracy, width, most):
+def test_fine_settings_resolve_width_and_size(accuracy, width, most):
     block = {"kind": "rectangle", "lower": [1.0, 0.0], "upper": [1.0 + width, 1.0]}
     scene = Scene.from_dict(changed(COLUMN, {"accuracy": accuracy, "grid.cell_size": None, "body.0.shape": block}))
     cell_size = scene.grid.cell_size
     assert 0.95 * most < cell_size < 1.000001 * most
-    assert scene.transfer.time_constant == pytest.approx(0.1 * cell_size)
-    on_stated_cells = Scene.from_dict(changed(COLUMN, {"accuracy": accuracy, "grid.cell_size": 0.0125}))
-    assert on_stated_cells.transfer.time_constant == pytest.approx(0.00125)
-    stated = Scene.from_dict(changed(COLUMN, {"accuracy": accuracy, "transfer.time_constant": 0.02}))
-    assert stated.transfer.time_constant == 0.02
+
+
+def test_the_blend_time_follows_the_cells_unless_it_is_stated():
+    assert Scene.from_dict(changed(COLUMN, {"grid.cell_size": 0.0125})).blend_time == pytest.approx(0.00125)
+    assert Scene.from_dict(changed(COLUMN, {"transfer.time_constant": 0.02})).blend_time == 0.02
+    assert Scene.from_dict(changed(COLUMN, {"transfer.scheme": "apic"})).blend_time == 0.0
 
 
 def test_normally_consolidated_clay_has_settings_of_its_own():
@@ -49,7 +50,7 @@ def test_normally_consolidated_clay_has_settings_of_its_own():
         changed(COLUMN, {**clay(1.0), "accuracy": "3%", "grid.cell_size": None, "body.0.shape": squat})
     )
     assert 0.95 * math.sqrt(0.24) / 80 < scene.grid.cell_size < 1.000001 * math.sqrt(0.24) / 80
-    assert (scene.body[0].points_per_cell, scene.transfer.time_constant) == (16, 0.01)
+    assert scene.body[0].points_per_cell == 16
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,7 @@ def test_one_command_measures_prints_and_stores_everything(tmp_path):
 
 def test_the_yardstick_is_no_straw_man_and_comes_to_the_pile_of_the_library():
     cell_size = 0.0125
-    library = collapse("mu(I)-LC", cell_size, {"transfer.scheme": "apic"})
+    library = collapse("mu(I)-LC", cell_size, {"transfer.scheme": "apic", "transfer.volume_projection": False})
     yardstick = Yardstick(library)
     library.advance_to(0.4)
     yardstick.advance_to(0.4)

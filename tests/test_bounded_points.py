@@ -20,7 +20,7 @@ def test_points_at_the_smallest_yield_surface_are_counted(name, precision):
     states = np.zeros((len(law.state._fields), 4), precision)
     states[law.state._fields.index("preconsolidation_pressure")] = [0.1, 0.1001, 0.08, 1e3]
     body = SimpleNamespace(law=law, parameters=parameters, states=states, stress=np.ones((4, 4)), count=4)
-    simulation = SimpleNamespace(bodies=[body], periodic_axes=(0, 1), grid=None)
+    simulation = SimpleNamespace(bodies=[body], periodic_axes=(0, 1), grid=None, ways_bounded=0)
     assert limited(simulation)["points_at_a_bound_of_their_law"] == 2
 
 

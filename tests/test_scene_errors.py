@@ -71,7 +71,7 @@ FAULTS = {
                                   r"output\.picture_field: unknown field 'presure'; did you mean 'pressure'\? "
                                   r"allowed: velocity, pressure, .*shear_strain.*, body\n"),
     "field like no other": ({"output.picture_field": "temperature"},
-                            r"output\.picture_field: unknown field 'temperature'; valid names: body, .*velocity"),
+                            r"output\.picture_field: unknown field 'temperature'; .*velocity, .*body"),
     "no body": ({"body": []}, r"body = \[\]: allowed: 1 or more entries"),
     "body is a number": ({"body": 3}, r"body = 3: allowed: a list"),
     "points per cell": ({"body.0.points_per_cell": 5}, r"body\.0\.points_per_cell = 5: allowed: 1, 4, 9, 16, 25 or 36"),

@@ -81,3 +81,21 @@ def test_shear_strain_is_kept_only_for_a_scene_that_writes_it():
 def test_threads_are_not_those_that_spin_at_the_end_of_a_process():
     one_body().update_stress(1e-4)
     assert numba.threading_layer() == "omp"
+
+
+def jaumann_error(steps, shear=0.5):
+    """Simple shear by `shear` in so many steps against sigma_xy = G sin(gamma), sigma_xx = G (1 - cos(gamma))."""
+    (body,) = simulation(BLOCK).bodies
+    modulus = 3.0 * 1e4 * (1.0 - 2.0 * 0.2) / (2.0 * (1.0 + 0.2))
+    body.velocity_gradient[0, 1] = shear
+    for _ in range(steps):
+        body.update_stress(1.0 / steps)
+    exact = modulus * np.array([1.0 - np.cos(shear), np.sin(shear)])
+    return np.abs(body.stress[[0, 3], 0] - exact).max() / modulus
+
+
+def test_stress_under_shear_and_spin_is_of_second_order_in_the_step():
+    errors = [jaumann_error(steps) for steps in (8, 16, 32)]
+    assert errors[0] < 1e-3
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(2.0, abs=0.1)

@@ -23,7 +23,6 @@ SMALL_SCENES = (
     "elastic_bar_vibration",
     "axis_aligned_solution",
     "sliding_block",
-    "slender_and_thin",
     "leaving_the_domain",
     "floor_friction_range",
     "turned_scene",

@@ -37,8 +37,7 @@ def plan(
         "cells of the domain": f"{planned.cells:,}",
         "active nodes": f"{planned.active_nodes:,}",
         "memory": f"{_megabytes(planned.memory_bytes)}; {planned.bytes_per_point:.0f} bytes per point in arrays",
-        "basis, transfer": f"{scene.transfer.basis}, {scene.transfer.scheme}, "
-        f"time constant {scene.transfer.time_constant:g} s",
+        "basis, transfer": f"{scene.transfer.basis}, {scene.transfer.scheme}, time constant {scene.blend_time:g} s",
         "time step": f"{planned.step:.3g} s at the start (stable: {planned.critical_time_step:.3g} s)",
         "steps": f"about {planned.steps:,}",
         "rate": f"{planned.points / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "

@@ -17,7 +17,7 @@ PX, PY, FX, FY = 0, 1, 2, 3
 NEW_VX, NEW_VY, OLD_VX, OLD_VY = 0, 1, 2, 3
 BULK = LANES
 MASS, VOLUME, VOLUME_PRESSURE = BULK, BULK + 1, BULK + 2
-NODE_OVERFILL, NODE_PRESSURE, NODE_DENSITY = BULK + 1, BULK + 2, BULK + 3
+NODE_PRESSURE, NODE_DENSITY = BULK + 1, BULK + 2
 COMPONENTS = 2 * LANES
 
 # Nodes beyond each side of the domain, enough for the widest stencil of a point that touches a wall.
@@ -29,8 +29,7 @@ NO_GHOSTS = (-1, 2**31 - 1)
 class Grid:
     """A rectangle of `cells` square cells of `cell_size` [m] whose lower corner is `lower` [m].
 
-    `wall_node_fraction` is the part of a cell that belongs to a node at a wall (see `shape_functions`), `precision` one
-    of `PRECISIONS`.
+    `precision` is one of `PRECISIONS`.
     Memory is reserved for the whole domain but, being zero until written, occupied only where material has been.
     """
 
@@ -40,7 +39,6 @@ class Grid:
         cells: tuple[int, int],
         cell_size: float,
         periodic_axes: Sequence[int] = (),
-        wall_node_fraction: float = 0.5,
         precision: str = "double",
     ) -> None:
         self.lower = lower
@@ -53,7 +51,6 @@ class Grid:
         # The nodes just beyond the walls, whose velocity is tied to the inside; no node where the axis is periodic.
         walls = [NO_GHOSTS if axis in periodic_axes else self._ghosts(axis) for axis in (0, 1)]
         self.ghosts = (*walls[0], *walls[1])
-        self.node_widths = tuple(self._node_widths(axis, axis in periodic_axes, wall_node_fraction) for axis in (0, 1))
         self.origin = (lower[0] - GHOSTS * cell_size, lower[1] - GHOSTS * cell_size)
 
     def empty_nodes(self) -> NDArray[Any]:
@@ -67,16 +64,6 @@ class Grid:
 
     def _ghosts(self, axis: int) -> tuple[int, int]:
         return GHOSTS - 1, GHOSTS + self.cells[axis] + 1
-
-    def _node_widths(self, axis: int, is_periodic: bool, wall_node_fraction: float) -> NDArray[np.float64]:
-        """The length along an axis that belongs to each node, in cells."""
-        node_widths = np.ones(self.shape[axis])
-        if not is_periodic:
-            low, high = GHOSTS, GHOSTS + self.cells[axis]
-            for wall, inside in ((low, low + 1), (high, high - 1)):
-                node_widths[wall] -= 1.0 - wall_node_fraction
-                node_widths[inside] += 0.5 - wall_node_fraction
-        return node_widths
 
 
 def _aligned_zeros(count: int, number: type[np.floating[Any]]) -> NDArray[Any]:

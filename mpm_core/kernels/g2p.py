@@ -11,9 +11,8 @@ so that tau = 0 is APIC (Jiang et al. 2015), tau = infinity affine FLIP, and the
 step. The energy of a point's field is m/2 (v^2 + A:A D); for tau = infinity the transfers keep its sum, but for terms
 of the order of dt.
 
-In some steps the grid also returns to each point pressure, density and overfill of the material around it, which couple
-the volumes of points (`volume_coupling`); where the scene asks for it, points then also shift down the gradient of
-overfill.
+In some steps the grid also returns to each point pressure and density of the material around it, which couple the
+volumes of points (`volume_coupling`).
 """
 
 from collections.abc import Callable
@@ -26,7 +25,6 @@ from numba.extending import register_jitable
 
 from grainlaw.materials.compilation import named
 from grainlaw.materials.precision import PRECISIONS
-from grainlaw.materials.tensor import SymmetricTensor, shear_strain_rate
 from grainlaw.mpm_core.grid.grid import BULK, NEW_VX
 from grainlaw.mpm_core.kernels.g2p_nodes import make_gather
 from grainlaw.mpm_core.kernels.positions import position_access
@@ -40,14 +38,25 @@ from grainlaw.mpm_core.kernels.simd.arithmetic import (
     scaled_sum,
     smallest,
     total,
-    where_equal,
     widened,
 )
 from grainlaw.mpm_core.kernels.simd.registers import LANES, LANES_OF, put, several_at, transposed_at
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.kernels.stencil import GROUP, make_find_stencils
-from grainlaw.mpm_core.kernels.volume_coupling import shifting_rate
-from grainlaw.mpm_core.layout import AXX, AXY, AYX, AYY, LXX, LXY, LYX, LYY, NEIGHBOUR_MEAN, OVERFILL, SXX, SYY, VX, VY
+from grainlaw.mpm_core.layout import (
+    AXX,
+    AXY,
+    AYX,
+    AYY,
+    LXX,
+    LXY,
+    LYX,
+    LYY,
+    NEIGHBOUR_DENSITY,
+    NEIGHBOUR_PRESSURE,
+    VX,
+    VY,
+)
 from grainlaw.mpm_core.parallel.blocks import points_of_block
 from grainlaw.mpm_core.parallel.work_sharing import chunk_ranges, next_chunk, threads_of
 
@@ -77,7 +86,7 @@ class G2PStencils(NamedTuple):
 class Interpolated(NamedTuple):
     """Four components of the nodes at the points of a group, those of each point side by side, and their gradients.
 
-    The components are new and old velocity, or the bulk: mass, overfill, pressure and density.
+    The components are new and old velocity, or the bulk, without gradients: mass, pressure, density and nothing.
     """
 
     means: Any
@@ -170,31 +179,10 @@ def updated_gradients(rows, first, last, at_once, cell_size, flip_fraction, sten
 @register_jitable(forceinline=True)
 def updated_neighbourhood(rows, first, last, at_once, bulk):  # type: ignore[no-untyped-def]
     """Update the averages of the material around a group."""
-    neighbour_mean, overfill, sxx, syy = rows[NEIGHBOUR_MEAN], rows[OVERFILL], rows[SXX], rows[SYY]
     for p in range(first, last, at_once):
-        _, overfill_around, pressure, density = transposed_at(bulk.means, p - first)
-        put(overfill, p, overfill_around)
-        without_sxx = where_equal(several_at(syy, p), 0.0, density, pressure)
-        put(neighbour_mean, p, where_equal(several_at(sxx, p), 0.0, without_sxx, pressure))
-
-
-@register_jitable(forceinline=True)
-def shift_points(rows, first, last, at_once, cell_size, dt, stencils, bulk, position_at, put_position):  # type: ignore[no-untyped-def]
-    """Move a group down the gradient of overfill, besides the motion of the material."""
-    lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-    for p in range(first, last, at_once):
-        k = p - first
-        shear = 0.5 * (several_at(lxy, p) + several_at(lyx, p))
-        shear_rate = shear_strain_rate(SymmetricTensor(several_at(lxx, p), several_at(lyy, p), 0.0, shear, 0.0, 0.0))
-        way = dt * cell_size * cell_size * shifting_rate(shear_rate, dt)
-        _, slope_x, _, _ = transposed_at(bulk.gradients_x, k)
-        _, slope_y, _, _ = transposed_at(bulk.gradients_y, k)
-        x, y = position_at(rows, p)
-        way_x, way_y = (
-            way * several_at(stencils.moment_x, k) * slope_x,
-            way * several_at(stencils.moment_y, k) * slope_y,
-        )
-        put_position(rows, p, x - widened(way_x), y - widened(way_y))
+        _, pressure, density, _ = transposed_at(bulk.means, p - first)
+        put(rows[NEIGHBOUR_PRESSURE], p, pressure)
+        put(rows[NEIGHBOUR_DENSITY], p, density)
 
 
 @register_jitable(forceinline=True)
@@ -253,33 +241,30 @@ def make_put_stencils(basis: Basis, precision: str) -> tuple[Callable[..., Any],
 
 
 @cache
-def make_g2p(basis: Basis, couples: bool, shifts: bool, precision: str) -> Callable[..., Any]:
+def make_g2p(basis: Basis, couples: bool, precision: str) -> Callable[..., Any]:
     """Give the points velocity, its gradient and, if `couples`, averages of the material around, and move them.
 
-    With `shifts`, points also move down the gradient of overfill. `flip_fraction` is exp(-dt/tau). Reports per block
-    of points: kinetic energy [J/m], corners of the bounding box [m], the largest speed at which a point moves [m/s] and
-    the momentum of that motion [kg/s].
+    `flip_fraction` is exp(-dt/tau). Reports per block of points: kinetic energy [J/m], corners of the bounding box [m],
+    the largest speed at which a point moves [m/s] and the momentum of that motion [kg/s].
     """
     gather_velocities = make_gather(basis, NEW_VX, True, precision)
-    gather_bulk = make_gather(basis, BULK, shifts, precision)
+    gather_bulk = make_gather(basis, BULK, False, precision)
     stencil_buffers, put_stencils = make_put_stencils(basis, precision)
     rows_of_points, position_at, put_position, *_ = position_access(precision)
     number, at_once = PRECISIONS[precision], LANES_OF[precision]
 
     @njit(parallel=True, error_model="numpy", cache=True)
-    @named(f"{basis.name}_{couples:d}{shifts:d}_{precision}_{CORE_MARK}")
+    @named(f"{basis.name}_{couples:d}_{precision}_{CORE_MARK}")
     def g2p(  # type: ignore[no-untyped-def]
         storage, count, point_mass, nodes, nodes_y, ghosts, origin, cell_size, dt, flip_fraction, threads, reports
     ):
         rows, inverse_size = rows_of_points(storage), 1.0 / cell_size
         ranges = chunk_ranges(reports.shape[0], threads)
         for thread in prange(threads_of(ranges)):
-            stencils, buffers = stencil_buffers(), np.empty((7, GROUP * LANES), number)
-            velocities, bulk = (
-                Interpolated(buffers[0], buffers[1], buffers[2]),
-                Interpolated(buffers[3], buffers[4], buffers[5]),
-            )
-            energies = buffers[6]
+            stencils, buffers = stencil_buffers(), np.empty((5, GROUP * LANES), number)
+            velocities = Interpolated(buffers[0], buffers[1], buffers[2])
+            bulk = Interpolated(buffers[3], buffers[1], buffers[2])
+            energies = buffers[4]
             block = next_chunk(ranges, thread)
             while block >= 0:
                 sums = no_sums(position_at(rows, np.uint64(0))[0])
@@ -308,10 +293,6 @@ def make_g2p(basis: Basis, couples: bool, shifts: bool, precision: str) -> Calla
                         position_at,
                         put_position,
                     )
-                    if shifts:
-                        shift_points(
-                            rows, first, last, at_once, cell_size, dt, stencils, bulk, position_at, put_position
-                        )
                 report(reports, block, point_mass, sums)
                 block = next_chunk(ranges, thread)
 

@@ -11,7 +11,6 @@ from grainlaw.mpm_core.grid.grid import (
     COMPONENTS,
     MASS,
     NODE_DENSITY,
-    NODE_OVERFILL,
     NODE_PRESSURE,
     VOLUME,
     VOLUME_PRESSURE,
@@ -20,7 +19,6 @@ from grainlaw.mpm_core.grid.grid import (
 from grainlaw.mpm_core.kernels.simd.arithmetic import halves_joined, halves_swapped
 from grainlaw.mpm_core.kernels.simd.registers import put, quad_at
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
-from grainlaw.mpm_core.kernels.volume_coupling import overfill_of
 
 
 def clear_nodes(nodes: NDArray[np.float64], grid: Grid, active: ActiveNodes) -> None:
@@ -33,9 +31,7 @@ def update_nodes(grid: Grid, active: ActiveNodes, gravity: tuple[float, float], 
 
     If `couples`, turn the volumes and pressures as well, into the averages that `volume_coupling` takes.
     """
-    _update(
-        grid.nodes, grid.shape[1], active, gravity[0], gravity[1], dt, couples, *grid.node_widths, grid.cell_size**2
-    )
+    _update(grid.nodes, grid.shape[1], active, gravity[0], gravity[1], dt, couples)
 
 
 @njit(parallel=True, cache=True)
@@ -49,7 +45,7 @@ def _clear(nodes, nodes_y, active):  # type: ignore[no-untyped-def]
 
 @njit(parallel=True, error_model="numpy", cache=True)
 @named(CORE_MARK)
-def _update(nodes, nodes_y, active, gravity_x, gravity_y, dt, couples, widths_x, widths_y, cell):  # type: ignore[no-untyped-def]
+def _update(nodes, nodes_y, active, gravity_x, gravity_y, dt, couples):  # type: ignore[no-untyped-def]
     impulse = np.array([dt * gravity_x, dt * gravity_y, 0.0, 0.0])
     for i in prange(active.first_column, active.last_column + 1):
         fall = quad_at(impulse, 0)
@@ -62,13 +58,11 @@ def _update(nodes, nodes_y, active, gravity_x, gravity_y, dt, couples, widths_x,
                 new = old_and_push + dt * push_and_old + fall
                 put(nodes, node, halves_joined(new, push_and_old))
                 if couples:
-                    _average(nodes, node, mass, cell * widths_x[i] * widths_y[j])
+                    _average(nodes, node, mass)
 
 
 @register_jitable(forceinline=True)
-def _average(nodes, node, mass, node_volume):  # type: ignore[no-untyped-def]
-    volume = nodes[node + np.uint64(VOLUME)]
-    per_volume = 1.0 / volume
-    nodes[node + np.uint64(NODE_OVERFILL)] = overfill_of(volume, node_volume)
+def _average(nodes, node, mass):  # type: ignore[no-untyped-def]
+    per_volume = 1.0 / nodes[node + np.uint64(VOLUME)]
     nodes[node + np.uint64(NODE_PRESSURE)] = nodes[node + np.uint64(VOLUME_PRESSURE)] * per_volume
     nodes[node + np.uint64(NODE_DENSITY)] = mass * per_volume

@@ -14,9 +14,24 @@ from numba.extending import register_jitable
 from grainlaw.materials.compilation import PointwiseLaw, named
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.materials.single_precision import adaptable, in_precision
-from grainlaw.materials.tensor import SymmetricTensor, isotropic
+from grainlaw.materials.tensor import SymmetricTensor, isotropic, pressure
+from grainlaw.mpm_core.kernels.rotation import at_end_of_step
 from grainlaw.mpm_core.kernels.simd.loop import loop_over_points
-from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ, VX, VY
+from grainlaw.mpm_core.layout import (
+    DENSITY,
+    FIRST_STATE,
+    LXX,
+    LXY,
+    LYX,
+    LYY,
+    NEIGHBOUR_PRESSURE,
+    SXX,
+    SXY,
+    SYY,
+    SZZ,
+    VX,
+    VY,
+)
 
 
 @register_jitable
@@ -111,7 +126,8 @@ class PointAccess(NamedTuple):
     """What compiled code reads of a point, as numbers of one kind.
 
     stress       (rows, p) -> the stress [Pa]
-    strain_rate  (rows, p, coupling, dt) -> that of the motion, less a compressive strain [1] over the step [1/s]
+    strain_rate  (rows, p, coupling, dt) -> that of the motion, turned to the end of the step, less a compressive strain
+                 [1] over the step [1/s]
     """
 
     stress: Callable[..., Any]
@@ -133,8 +149,10 @@ def point_access(precision: str) -> PointAccess:
     @adaptable
     @named(precision)
     def strain_rate_at(rows, p, coupling, dt):  # type: ignore[no-untyped-def]
-        shear = 0.5 * (number(rows[LXY][p]) + number(rows[LYX][p]))
-        motion = SymmetricTensor(number(rows[LXX][p]), number(rows[LYY][p]), nothing, shear, nothing, nothing)
+        across_x, across_y = number(rows[LXY][p]), number(rows[LYX][p])
+        angle, shear = 0.5 * dt * (across_y - across_x), 0.5 * (across_x + across_y)
+        xx, yy, xy = at_end_of_step(number(rows[LXX][p]), number(rows[LYY][p]), shear, angle)
+        motion = SymmetricTensor(xx, yy, nothing, xy, nothing, nothing)
         return motion + isotropic(number(coupling) * (-1.0 / (3.0 * dt)))
 
     return PointAccess(stress_at, in_precision(strain_rate_at, precision))
@@ -245,7 +263,7 @@ def no_diffusivity(rows, first, last, parameters, dt):  # type: ignore[no-untype
 
 
 def make_find_stiffness(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
-    """The stiffness rho c^2 of some points [Pa]."""
+    """The stiffness rho c^2 of some points [Pa]: the mean of those at their own pressure and at that around them."""
     sound_speed, parameter_class, number = law.sound_speed, law.parameters, PRECISIONS[law.precision]
     (stress_at, _), (load, _) = point_access(law.precision), make_state_access(law.state, mark, law.precision)
 
@@ -254,8 +272,12 @@ def make_find_stiffness(law: PointwiseLaw, mark: str) -> Callable[..., Any]:
     def find_stiffness(rows, first, last, parameters, stiffness):  # type: ignore[no-untyped-def]
         law_parameters = parameter_class(*parameters)
         for p in range(first, last):
-            density = number(rows[DENSITY][p])
-            sound = sound_speed(stress_at(rows, p), density, load(rows, p), law_parameters)
-            stiffness[p - first] = density * sound * sound
+            density, stress, state = number(rows[DENSITY][p]), stress_at(rows, p), load(rows, p)
+            around = stress + isotropic(pressure(stress) - number(rows[NEIGHBOUR_PRESSURE][p]))
+            own, shared = (
+                sound_speed(stress, density, state, law_parameters),
+                sound_speed(around, density, state, law_parameters),
+            )
+            stiffness[p - first] = number(0.5) * density * (own * own + shared * shared)
 
     return find_stiffness

@@ -77,6 +77,7 @@ class PositionAccess(NamedTuple):
     put      (rows, p, x, y)
     along    (storage, axis, p) -> the coordinate of a point along an axis
     density  (storage, p) -> the density of a point
+    put_along  (storage, axis, p, coordinate)
     """
 
     rows: Callable[..., Any]
@@ -84,14 +85,15 @@ class PositionAccess(NamedTuple):
     put: Callable[..., Any]
     along: Callable[..., Any]
     density: Callable[..., Any]
+    put_along: Callable[..., Any]
 
 
 @cache
 def position_access(precision: str) -> PositionAccess:
     """The access for points in a precision."""
     if precision == "double":
-        return PositionAccess(_all_rows, _at, _put, _along, _density)
-    return PositionAccess(_rows_and_remainders, _at_both, _put_both, _along_both, _density_both)
+        return PositionAccess(_all_rows, _at, _put, _along, _density, _put_along)
+    return PositionAccess(_rows_and_remainders, _at_both, _put_both, _along_both, _density_both, _put_along_both)
 
 
 @register_jitable(forceinline=True)
@@ -148,3 +150,14 @@ def _density(storage, p):  # type: ignore[no-untyped-def]
 @register_jitable(forceinline=True)
 def _density_both(storage, p):  # type: ignore[no-untyped-def]
     return np.float64(storage[DENSITY, p]) + storage[DENSITY_REMAINDER, p]
+
+
+@register_jitable(forceinline=True)
+def _put_along(storage, axis, p, coordinate):  # type: ignore[no-untyped-def]
+    storage[axis, p] = coordinate
+
+
+@register_jitable(forceinline=True)
+def _put_along_both(storage, axis, p, coordinate):  # type: ignore[no-untyped-def]
+    storage[axis, p] = coordinate
+    storage[X_REMAINDER + axis, p] = coordinate - storage[axis, p]

@@ -38,7 +38,6 @@ class Basis:
     moment        second moment of the weights about the point
     lower_wall    weights where the first node is a ghost
     upper_wall    weights where the last node is a ghost
-    wall_node_fraction     the part of a cell that the changed weights leave to the node at a wall, their integral
     """
 
     name: str
@@ -48,7 +47,6 @@ class Basis:
     moment: Callable[[float], float]
     lower_wall: Callable[..., tuple[float, ...]]
     upper_wall: Callable[..., tuple[float, ...]]
-    wall_node_fraction: float
 
 
 @register_jitable
@@ -132,18 +130,11 @@ def cubic_at_upper_wall(w: tuple[float, float, float, float]) -> tuple[float, fl
 BASES = {
     basis.name: basis
     for basis in (
-        Basis("linear", 2, 0.0, linear_weights, linear_moment, linear_at_wall, linear_at_wall, 1 / 2),
+        Basis("linear", 2, 0.0, linear_weights, linear_moment, linear_at_wall, linear_at_wall),
         Basis(
-            "quadratic",
-            3,
-            0.5,
-            quadratic_weights,
-            quadratic_moment,
-            quadratic_at_lower_wall,
-            quadratic_at_upper_wall,
-            13 / 24,
+            "quadratic", 3, 0.5, quadratic_weights, quadratic_moment, quadratic_at_lower_wall, quadratic_at_upper_wall
         ),
-        Basis("cubic", 4, 1.0, cubic_weights, cubic_moment, cubic_at_lower_wall, cubic_at_upper_wall, 7 / 12),
+        Basis("cubic", 4, 1.0, cubic_weights, cubic_moment, cubic_at_lower_wall, cubic_at_upper_wall),
     )
 }
 

@@ -1,7 +1,7 @@
 """The stress pass: the only kernel that knows a law. One is generated for each law that a scene uses.
 
-For each point: rotate the stress with the material (exact rotation by the increment of spin),
-bring the density to the end of the step (midpoint rule for d ln rho = -tr D dt), call the law.
+For each point: turn stress and strain rate to the end of the step (`rotation`), bring the density there (midpoint rule
+for d ln rho = -tr D dt), call the law.
 
 Loose grains take on a strain besides that of the motion, which couples the volumes of points (`volume_coupling`).
 """
@@ -18,7 +18,7 @@ from grainlaw.materials.compilation import PointwiseLaw, named
 from grainlaw.materials.elementary import fused
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.materials.single_precision import adaptable, in_precision
-from grainlaw.materials.tensor import THIRD, SymmetricTensor, shear_strain_rate, trace
+from grainlaw.materials.tensor import THIRD, SymmetricTensor, shear_strain_rate
 from grainlaw.mpm_core.kernels.law_at_points import (
     make_apply_law,
     make_find_stiffness,
@@ -26,12 +26,12 @@ from grainlaw.mpm_core.kernels.law_at_points import (
     make_largest_signal_speed,
     ordered_bits,
 )
+from grainlaw.mpm_core.kernels.rotation import at_end_of_step, rotated
 from grainlaw.mpm_core.kernels.rows import rows_of
 from grainlaw.mpm_core.kernels.simd.arithmetic import filled, first_lanes, total
 from grainlaw.mpm_core.kernels.simd.registers import LANES, quad_at
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.kernels.volume_coupling import (
-    OVERFILL_COMPRESSION,
     closing_strain,
     smoothing_share,
     smoothing_strain,
@@ -44,8 +44,8 @@ from grainlaw.mpm_core.layout import (
     LXY,
     LYX,
     LYY,
-    NEIGHBOUR_MEAN,
-    OVERFILL,
+    NEIGHBOUR_DENSITY,
+    NEIGHBOUR_PRESSURE,
     SXX,
     SXY,
     SYY,
@@ -63,39 +63,18 @@ REPORTS = 4
 
 
 @adaptable
-def rotated(sxx, syy, sxy, angle):  # type: ignore[no-untyped-def]
-    """In-plane stress components after a rotation by `angle`.
-
-    Sine and cosine of twice the angle are the power series that end below 1e-12 at an angle of a quarter.
-    """
-    t = angle + angle
-    u = t * t
-    # the coefficients are inverse factorials
-    sine = fused(u, fused(u, fused(u, fused(u, 1.0 / 362880.0, -1.0 / 5040.0), 1.0 / 120.0), -1.0 / 6.0), 1.0) * t
-    fourth = fused(u, fused(u, fused(u, -1.0 / 3628800.0, 1.0 / 40320.0), -1.0 / 720.0), 1.0 / 24.0)
-    cosine = fused(u, fused(u, fourth, -0.5), 1.0)
-    mean, half = 0.5 * (sxx + syy), 0.5 * (sxx - syy)
-    turned = fused(half, cosine, -sxy * sine)
-    return mean + turned, mean - turned, fused(half, sine, sxy * cosine)
-
-
-@adaptable
-def couple_volumes(rows, first, last, duration, exchange, stiffness, coupling):  # type: ignore[no-untyped-def]
+def couple_volumes(rows, first, last, duration, stiffness, coupling):  # type: ignore[no-untyped-def]
     """The compressive strain that couples the volumes of points for a time [s], into `coupling`."""
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-    sxx, syy, szz = rows[SXX], rows[SYY], rows[SZZ]
-    density, neighbour_mean, overfill = rows[DENSITY], rows[NEIGHBOUR_MEAN], rows[OVERFILL]
+    sxx, syy, szz, density = rows[SXX], rows[SYY], rows[SZZ], rows[DENSITY]
+    neighbour_pressure, neighbour_density = rows[NEIGHBOUR_PRESSURE], rows[NEIGHBOUR_DENSITY]
     for p in range(first, last):
         motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-        shear_rate = shear_strain_rate(motion)
-        share = smoothing_share(shear_rate, exchange)
+        share = smoothing_share(shear_strain_rate(motion), duration)
         pressure = (sxx[p] + syy[p] + szz[p]) * -THIRD
-        smoothing = smoothing_strain(pressure, neighbour_mean[p], stiffness[p - first], share)
-        closing = closing_strain(density[p], neighbour_mean[p], share)
-        has_contact = sxx[p] != 0.0 or syy[p] != 0.0
-        coupling[p - first] = (
-            smoothing if has_contact else closing
-        ) + OVERFILL_COMPRESSION * duration * shear_rate * overfill[p]
+        smoothing = smoothing_strain(pressure, neighbour_pressure[p], stiffness[p - first], share)
+        closing = closing_strain(density[p], neighbour_density[p], share)
+        coupling[p - first] = smoothing if pressure > 0.0 else closing
 
 
 @adaptable
@@ -103,9 +82,9 @@ def bring_forward(rows, first, last, dt, coupling, buffers, remainder):  # type:
     """Rotate the stress and bring the density to the end of the step; returns the largest increment of the motion.
 
     `coupling` are compressive strains besides those of the motion. The step after this one has none, so that they bound
-    no step; they are only to be finite. The buffers receive the power of the old stress over
-    mass, and the new volume over mass. In single precision `remainder` is what singles leave out of the densities: slow
-    strains change a density by less than its rounding in a step, and would be lost.
+    no step; they are only to be finite. The buffers receive the power of the old stress over mass, and the new volume
+    over mass. In single precision `remainder` is what singles leave out of the densities: slow strains change a density
+    by less than its rounding in a step, and would be lost.
     """
     works, volumes = buffers
     lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
@@ -113,13 +92,14 @@ def bring_forward(rows, first, last, dt, coupling, buffers, remainder):  # type:
     density = rows[DENSITY]
     largest = np.int64(0)
     for p in range(first, last):
-        motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-        half_increment = 0.5 * (dt * trace(motion) - coupling[p - first])
-        xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], 0.5 * dt * (lyx[p] - lxy[p]))
+        angle = 0.5 * dt * (lyx[p] - lxy[p])
+        half_increment = 0.5 * (dt * (lxx[p] + lyy[p]) - coupling[p - first])
+        xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], angle)
+        rate_xx, rate_yy, rate_xy = at_end_of_step(lxx[p], lyy[p], 0.5 * (lxy[p] + lyx[p]), angle)
         # rho (1 - h)/(1 + h), and both volumes, from a single division
         grown, shrunk = 1.0 + half_increment, 1.0 - half_increment
         inverse = 1.0 / (density[p] * grown * shrunk)
-        power = fused(xx, motion.xx, fused(yy, motion.yy, 2.0 * xy * motion.xy))
+        power = fused(xx, rate_xx, fused(yy, rate_yy, 2.0 * xy * rate_xy))
         works[p - first] = power * (inverse * grown * shrunk)
         volumes[p - first] = inverse * grown * grown
         sxx[p], syy[p], sxy[p] = xx, yy, xy
@@ -132,7 +112,7 @@ def bring_forward(rows, first, last, dt, coupling, buffers, remainder):  # type:
             new = density[p] + change
             remainder[p] = change - (new - density[p])
             density[p] = new
-        largest = max(largest, ordered_bits(abs(dt * trace(motion)) + 0.0 * coupling[p - first]))
+        largest = max(largest, ordered_bits(abs(dt * (lxx[p] + lyy[p])) + 0.0 * coupling[p - first]))
     return largest
 
 
@@ -169,7 +149,7 @@ def no_shear_strain(rows, first, last, dt):  # type: ignore[no-untyped-def]
 
 
 @register_jitable
-def work_done(rows, first, last, buffers):  # type: ignore[no-untyped-def]
+def work_done(rows, first, last, dt, buffers):  # type: ignore[no-untyped-def]
     """The mean of the powers of the old and the new stress over mass, summed over the points [W/kg].
 
     In four sums side by side: an addition waits for the one before it.
@@ -180,8 +160,9 @@ def work_done(rows, first, last, buffers):  # type: ignore[no-untyped-def]
     sums = filled(0.0)
     for p in range(first, last, LANES):
         k = p - first
-        across = quad_at(sxy, p) * (quad_at(lxy, p) + quad_at(lyx, p))
-        power = quad_at(sxx, p) * quad_at(lxx, p) + quad_at(syy, p) * quad_at(lyy, p) + across
+        angle = (0.5 * dt) * (quad_at(lyx, p) - quad_at(lxy, p))
+        xx, yy, xy = at_end_of_step(quad_at(lxx, p), quad_at(lyy, p), 0.5 * (quad_at(lxy, p) + quad_at(lyx, p)), angle)
+        power = quad_at(sxx, p) * xx + quad_at(syy, p) * yy + quad_at(sxy, p) * (xy + xy)
         work = 0.5 * (quad_at(works, k) + power * quad_at(volumes, k))
         sums = sums + (work if p + np.uint64(LANES) <= last else first_lanes(work, float(last - p), 0.0))
     return total(sums)
@@ -191,10 +172,9 @@ def work_done(rows, first, last, buffers):  # type: ignore[no-untyped-def]
 def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str) -> Callable[..., Any]:
     """The stress pass of a law; it takes the law's parameters as a plain tuple. The precision is that of the points.
 
-    It couples the volumes of the points for a time `coupled_time` [s], zero for not in this step; `exchange` is that
-    time over the FLIP blend time. Reports per block of points: the largest signal speed c + |v| [m/s], the work of the
-    stress on the strain [J/m], the largest volumetric strain increment of the motion, NaN where anything is not finite,
-    and the largest viscosity over density [m2/s].
+    It couples the volumes of the points for a time `coupled_time` [s], zero for not in this step. Reports per block of
+    points: the largest signal speed c + |v| [m/s], the work of the stress on the strain [J/m], the largest volumetric
+    strain increment of the motion, NaN where anything is not finite, and the largest viscosity over density [m2/s].
     """
     mark, number = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}_{precision}", PRECISIONS[precision]
     apply_law, find_stiffness = make_apply_law(law, mark), make_find_stiffness(law, mark)
@@ -212,7 +192,7 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(mark)
     def stress_pass(  # type: ignore[no-untyped-def]
-        storage, count, point_mass, parameters, dt, coupled_time, exchange, threads, reports
+        storage, count, point_mass, parameters, dt, coupled_time, threads, reports
     ):
         rows, ranges = rows_of(storage, all_rows), chunk_ranges(reports.shape[0], threads)
         for thread in prange(threads_of(ranges)):
@@ -226,13 +206,13 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str
                     first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
                     if coupled_time > 0.0:
                         find_stiffness(rows, first, last, parameters, stiffness)
-                        couple(rows, first, last, number(coupled_time), number(exchange), stiffness, coupling)
+                        couple(rows, first, last, number(coupled_time), stiffness, coupling)
                     accumulate(rows, first, last, step)
                     increment = forward(rows, first, last, step, coupling, buffers, density_remainder(storage))
                     apply_law(rows, first, last, coupling, parameters, dt)
                     speed = largest_signal_speed(rows, first, last, parameters)
                     diffusivity = max(diffusivity, largest_diffusivity(rows, first, last, parameters, dt))
-                    work += work_done(rows, first, last, buffers)
+                    work += work_done(rows, first, last, dt, buffers)
                     fastest, largest = max(fastest, speed), max(largest, increment)
                 reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
                 reports[block, INTERNAL_WORK] = point_mass * dt * work

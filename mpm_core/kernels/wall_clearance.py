@@ -27,7 +27,8 @@ from numpy.typing import NDArray
 from grainlaw.materials.compilation import named
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.grid.active_nodes import DRIFT
-from grainlaw.mpm_core.grid.grid import Grid
+from grainlaw.mpm_core.grid.cell_volumes import WallGap
+from grainlaw.mpm_core.grid.grid import GHOSTS, Grid
 from grainlaw.mpm_core.kernels.positions import coordinate_of, position_access
 from grainlaw.mpm_core.kernels.shape_functions import Basis
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
@@ -35,6 +36,8 @@ from grainlaw.mpm_core.kernels.walls import WallKind
 
 # Distances below this, in cells, are round-off of places and volumes: what starts on a wall touches it.
 ROUND_OFF = 1e-9
+# Clearances beyond this, in cells, are gaps.
+SMALLEST_GAP = 0.05
 
 
 class WallClearance:
@@ -89,6 +92,16 @@ class WallClearance:
             self._join(clearances[number], 1 - int(self.rows[number]["axis"]))
         return clearances
 
+    def gaps(self) -> list[WallGap]:
+        """Where friction walls, the ones that let material leave, are not touched by it."""
+        found = []
+        for row, clearances in zip(self.rows, self.clearances(), strict=True):
+            if row["kind"] == WallKind.FRICTION:
+                axis = int(row["axis"])
+                off = clearances[GHOSTS : GHOSTS + self.grid.cells[1 - axis] + 1] > SMALLEST_GAP * self.grid.cell_size
+                found.append(WallGap(axis, bool(row["sign"] > 0.0), off[:-1] & off[1:]))
+        return found
+
     def _join(self, clearances: NDArray[np.float64], along: int) -> None:
         """Give nodes that are one and the same across a periodic axis the least of their clearances."""
         nodes, cells = self.grid.shape[along], self.grid.cells[along]
@@ -100,7 +113,8 @@ class WallClearance:
 @cache
 def _make_narrow(precision: str) -> Callable[..., Any]:
     """A kernel that narrows clearances along rows to those of points in a precision; the first thread's hold all."""
-    *_, along, density = position_access(precision)
+    access = position_access(precision)
+    along, density = access.along, access.density
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(f"{precision}_{CORE_MARK}")

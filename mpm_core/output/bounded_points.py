@@ -2,7 +2,9 @@
 
 - points without stress, which open and close freely (`stress`: points without contact),
 - points nearer to a wall than a twentieth of a cell, whose stiffness is bounded (`basis`),
-- points that their law holds at a bound of its own (`Law.lower_bounds`), such as Cam Clay's smallest yield surface.
+- points that their law holds at a bound of its own (`Law.lower_bounds`), such as Cam Clay's smallest yield surface,
+- faces of cells, since the start, across which volume projection would have moved points by more than a quarter of a
+  cell at once.
 
 Everything else that goes wrong stops a run.
 """
@@ -16,11 +18,12 @@ from grainlaw.mpm_core.simulation import Simulation
 
 
 def limited(simulation: Simulation) -> dict[str, int]:
-    """Numbers of points for which something is bounded now, by what it is."""
+    """Numbers of points for which something is bounded now, and of faces for which it was, by what it is."""
     return {
         "points_without_stress": sum(_without_stress(body) for body in simulation.bodies),
         "points_at_a_wall": sum(_at_walls(simulation, body) for body in simulation.bodies),
         "points_at_a_bound_of_their_law": sum(_at_bounds(body) for body in simulation.bodies),
+        "long_ways_of_volume_projection": simulation.ways_bounded,
     }
 
 

@@ -38,6 +38,8 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
         "time": simulation.time,
         "steps": simulation.steps,
         "drift": simulation.drift,
+        "drift_unprojected": simulation.drift_unprojected,
+        "ways_bounded": simulation.ways_bounded,
         "last_step": simulation.last_step,
         "signal_speed": simulation.signal_speed,
         "strain_rate": simulation.strain_rate,
@@ -125,6 +127,8 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     simulation.time = float(file.attrs["time"])
     simulation.steps = int(file.attrs["steps"])
     simulation.drift = float(file.attrs["drift"])
+    simulation.drift_unprojected = float(file.attrs["drift_unprojected"])
+    simulation.ways_bounded = int(file.attrs["ways_bounded"])
     simulation.last_step = float(file.attrs["last_step"])
     simulation.signal_speed = float(file.attrs["signal_speed"])
     simulation.strain_rate = float(file.attrs["strain_rate"])

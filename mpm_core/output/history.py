@@ -47,6 +47,15 @@ HISTORY_COLUMNS = (
     HistoryColumn(
         "numerical_dissipation", "J/m", "energy that transfers and time integration took per width since the start"
     ),
+    HistoryColumn(
+        "volume_projection",
+        "J/m",
+        "part of `potential_energy` that points gained by being moved apart, since the start",
+    ),
+    HistoryColumn(
+        "overfill", "1", "mean over the cells inside loose material of the volume of points over the room, less one"
+    ),
+    HistoryColumn("overfill_scatter", "1", "standard deviation of the same"),
     HistoryColumn("points_asleep", "1", "number of points that sleep (`sleep` of the scene)", whole_number=True),
     HistoryColumn("step", "1", "number of the step", whole_number=True),
     HistoryColumn("wall_time", "s", "wall-clock time since the start of the run"),

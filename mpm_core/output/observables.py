@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.grid.cell_volumes import cell_volumes
+from grainlaw.mpm_core.simulation import Simulation
 
 # The middle share of the mass between the fronts: single points that roll ahead do not count.
 MASS_BETWEEN_FRONTS = 0.98
@@ -27,6 +29,21 @@ class PileShape:
     front_right: float
     height: float
     center_of_mass_height: float
+
+
+@dataclass(frozen=True)
+class InteriorOverfill:
+    """The volume that points bring to the cells inside the material over their room, less one: mean and scatter [1]."""
+
+    mean: float
+    scatter: float
+
+
+def interior_overfill(simulation: Simulation) -> InteriorOverfill:
+    """Measure it over cells of loose material that are far enough from any free surface; zero where there is none."""
+    volumes = cell_volumes(simulation.bodies, simulation.grid, simulation.periodic_axes)
+    inside = volumes.fill[volumes.is_interior() & (volumes.held <= 0.5 * volumes.fill)] - 1.0
+    return InteriorOverfill(float(inside.mean()), float(inside.std())) if inside.size else InteriorOverfill(0.0, 0.0)
 
 
 def pile_shape(bodies: Sequence[Body], floor: float, cell_size: float) -> PileShape:

@@ -6,7 +6,7 @@ from grainlaw.mpm_core.output.checkpoint import Clock, write_checkpoint
 from grainlaw.mpm_core.output.fields import make_frame
 from grainlaw.mpm_core.output.frame_series import FrameSeries
 from grainlaw.mpm_core.output.history import HistoryWriter, read_history
-from grainlaw.mpm_core.output.observables import PileShape, pile_shape
+from grainlaw.mpm_core.output.observables import PileShape, interior_overfill, pile_shape
 from grainlaw.mpm_core.output.quantities import write_quantities
 from grainlaw.mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame
 from grainlaw.mpm_core.scene.model import Scene
@@ -79,6 +79,7 @@ class Recorder:
 
     def _append_history(self) -> None:
         shape, ledger, elastic = self.shape(), self.simulation.ledger, self.simulation.elastic_energy()
+        overfill = interior_overfill(self.simulation)
         self.history.append(
             {
                 "t": self.simulation.time,
@@ -96,6 +97,9 @@ class Recorder:
                 "wall_work": ledger.wall_work,
                 "wall_friction": ledger.wall_friction,
                 "numerical_dissipation": ledger.numerical_dissipation,
+                "volume_projection": ledger.volume_projection,
+                "overfill": overfill.mean,
+                "overfill_scatter": overfill.scatter,
                 "points_asleep": sum(body.count - body.awake for body in self.simulation.bodies),
                 "step": self.simulation.steps,
                 "wall_time": self.clock.wall_time,

@@ -119,6 +119,11 @@ class TimeSection(Section):
     )
 
 
+# The decay time of velocities below the grid's resolution over the cell size [s/m]. With one time for all cells piles
+# do not converge: flow at nearly constant friction is unstable against short waves, which a long time keeps alive.
+BLEND_TIME_PER_CELL = 0.1
+
+
 class TransferSection(Section):
     """Shape functions and the transfer between points and grid."""
 
@@ -127,16 +132,15 @@ class TransferSection(Section):
         default="affine_flip",
         description="affine_flip keeps velocities below the grid's resolution for `time_constant`; apic drops them",
     )
-    time_constant: float = Field(
-        default=0.01,
+    time_constant: float | None = Field(
+        default=None,
         gt=0,
-        description="decay time of velocities below the grid's resolution (affine_flip only), and of the opening of "
-        "points without stress [s]",
+        description="decay time of velocities below the grid's resolution (affine_flip only); default: 0.1 s/m times "
+        "the cell size [s]",
     )
-    spreading: bool = Field(
-        default=False,
-        description="points of loose grains also move down the gradient of overfill; for flows of long duration, where "
-        "points crowd",
+    volume_projection: bool = Field(
+        default=True,
+        description="points of loose grains are moved apart until they leave each cell the room it has",
     )
 
 
@@ -256,7 +260,7 @@ class Scene(Section):
     title: str = Field(default="", description="one line for reports")
     accuracy: Literal["10%", "3%", "1%"] | None = Field(
         default=None,
-        description="sets grid.cell_size, time.safety, body.points_per_cell, transfer.time_constant and precision "
+        description="sets grid.cell_size, time.safety, body.points_per_cell and precision "
         "where the scene does not, to what kept runout, height and centre of mass of column collapses within this of "
         "finer grids; refused where that was not reached, and for bodies few grains wide, or more slender than those "
         "with which it was",
@@ -282,6 +286,13 @@ class Scene(Section):
     def source(self) -> str:
         """The file that the scene was read from, for messages."""
         return self._source
+
+    @property
+    def blend_time(self) -> float:
+        """The decay time of velocities below the grid's resolution [s]; zero for APIC, which drops them."""
+        if self.transfer.scheme == "apic":
+            return 0.0
+        return self.transfer.time_constant or BLEND_TIME_PER_CELL * self.grid.cell_size
 
     @model_validator(mode="before")
     @classmethod

@@ -48,7 +48,6 @@ def with_settings_for_accuracy(content: Any) -> Any:
         **content,
         "grid": {**grid, "cell_size": cell_size},
         "time": {"safety": resolution.safety, **time},
-        "transfer": _with_blend_time(content.get("transfer", {}), resolution, cell_size),
         "body": [_with_points(body, resolution.points_per_cell) for body in content["body"]],
     }
 
@@ -84,13 +83,11 @@ def _strictest(accuracy: str, stated: Mapping[str, Mapping[str, Resolution]]) ->
                 f"{allowed}"
             )
         chosen.append(reached[accuracy])
-    blend_times = [found.blend_time_per_cell for found in chosen if found.blend_time_per_cell is not None]
     return Resolution(
         max(found.cells_across for found in chosen),
         max(found.points_per_cell for found in chosen),
         min(found.safety for found in chosen),
         max(found.cells_along for found in chosen),
-        min(blend_times, default=None),
         min(found.slenderness for found in chosen),
     )
 
@@ -114,17 +111,6 @@ def _refuse_cells_finer_than_grains(accuracy: str, cell_size: float, materials: 
             f"accuracy = '{accuracy}' takes cells of {cell_size:.3g} m, finer than the grains of "
             f"{largest:g} m, with which it was not tried; {INSTEAD}"
         )
-
-
-def _with_blend_time(transfer: Any, resolution: Resolution, cell_size: Any) -> Any:
-    """The table of the transfer, with a blend time that follows the cell size where the resolution has one."""
-    if (
-        resolution.blend_time_per_cell is None
-        or not isinstance(transfer, Mapping)
-        or not isinstance(cell_size, int | float)
-    ):
-        return transfer
-    return {"time_constant": resolution.blend_time_per_cell * cell_size, **transfer}
 
 
 def _with_points(body: Mapping[str, Any], points_per_cell: int) -> dict[str, Any]:

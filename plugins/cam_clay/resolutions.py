@@ -5,8 +5,6 @@ Overconsolidated clay softens as it fails, so that its runout depends on the cel
 
 from grainlaw.materials import Resolution
 
-BLEND_TIME_PER_CELL = 0.1
-
 # By overconsolidation ratio.
 MODIFIED_CAM_CLAY = {
     1.0: {
@@ -16,6 +14,6 @@ MODIFIED_CAM_CLAY = {
     },
     # More slender columns fall in one of two ways, and leave other piles.
     4.0: {
-        "10%": Resolution(64, 25, 0.4, cells_along=80, blend_time_per_cell=BLEND_TIME_PER_CELL, slenderness=1.5),
+        "10%": Resolution(64, 25, 0.4, cells_along=80, slenderness=1.5),
     },
 }

@@ -113,7 +113,7 @@ def ring(cells: int, points_across_cell: int, angle: float) -> Simulation:
     radius, _ = polar(places)
     turn = swing(angle, 0.0)[1] * profile(radius)[0]
     body.velocity = turn * np.array([-places[1], places[0]])
-    body.choose_kernels(simulation.basis, shifts_points=False)
+    body.choose_kernels(simulation.basis)
     simulation.bodies = [body]
     simulation.measure_signals()
     simulation.held_nodes = nodes_where(simulation.grid, _is_outside)

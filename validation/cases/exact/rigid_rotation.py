@@ -74,10 +74,10 @@ def _withhold_spin(body: Body) -> None:
     """Show the stress pass the symmetric part of the velocity gradient only."""
     update = body.update_stress
 
-    def without_spin(dt: float, coupled_time: float = 0.0, exchange: float = 0.0, threads: int = 1) -> None:
+    def without_spin(dt: float, coupled_time: float = 0.0, threads: int = 1) -> None:
         gradient = body.velocity_gradient.copy()
         body.velocity_gradient = 0.5 * (gradient + gradient.swapaxes(0, 1))
-        update(dt, coupled_time, exchange, threads)
+        update(dt, coupled_time, threads)
         body.velocity_gradient = gradient
 
     body.update_stress = without_spin  # type: ignore[method-assign]

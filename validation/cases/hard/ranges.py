@@ -186,10 +186,14 @@ RANGES = (
         proves="coarse and fine quadrature run; from 4 points on the pile does not depend on it",
         label="{:g} points per cell",
         values=(1, 4, 9, 16),
-        changes=lambda count: {"body.0.points_per_cell": int(count)},
+        # Negative: so many, left where they crowd.
+        changes=lambda count: {
+            "body.0.points_per_cell": abs(int(count)),
+            "transfer.volume_projection": count > 0,
+        },
         related=same_half_width(16, 4, 9),
         claim=("from 4 points per cell, the half width of 16", HALF_WIDTH),
-        mistake=("one point per cell taken for four", {4: 1, 16: 16}),
+        mistake=("one point per cell, without volume projection, taken for four", {4: -1, 16: 16}),
         cell_size=COARSE,
     ),
     Range(

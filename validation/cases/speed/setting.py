@@ -32,10 +32,7 @@ OBSERVABLES = ("runout", "height", "center")
 
 @dataclass(frozen=True, order=True)
 class Setting:
-    """One run: material, column, and what may be chosen for the sake of speed.
-
-    `cell_size` in m; `time_constant` of the transfer in s.
-    """
+    """One run: material, column, and what may be chosen for the sake of speed; `cell_size` in m."""
 
     material: str
     column: str
@@ -45,13 +42,12 @@ class Setting:
     scheme: str = "affine_flip"
     basis: str = "quadratic"
     precision: str = "double"
-    time_constant: float = 0.01
 
     @property
     def key(self) -> str:
         """A name for files."""
         sizes = f"{self.cell_size:.6g}", f"{self.points_per_cell}", f"{self.safety:g}"
-        words = (self.material, self.column, *sizes, self.scheme, self.basis, self.precision, f"{self.time_constant:g}")
+        words = (self.material, self.column, *sizes, self.scheme, self.basis, self.precision)
         return "-".join("".join(c for c in word if c.isalnum() or c in "._") for word in words)
 
     @property
@@ -65,7 +61,6 @@ class Setting:
             "time.safety": self.safety,
             "transfer.scheme": self.scheme,
             "transfer.basis": self.basis,
-            "transfer.time_constant": self.time_constant,
         }
 
 

@@ -56,7 +56,7 @@ def promised_setting(material: str, accuracy: str, column: str, cell_size: float
     changes = {"accuracy": accuracy, "body.0.shape": shape, **left_open}
     scene = Scene.load(shipped_scenes()[SCENES[material]], changes)
     chosen = scene.grid.cell_size, scene.body[0].points_per_cell, scene.time.safety
-    return Setting(material, column, *chosen, precision=scene.precision, time_constant=scene.transfer.time_constant)
+    return Setting(material, column, *chosen, precision=scene.precision)
 
 
 def mean_outcome(fine: Iterable[Setting]) -> dict[str, float]:

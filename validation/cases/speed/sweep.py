@@ -1,10 +1,9 @@
 """Which settings are compared, and against what."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 
-from grainlaw.plugins.mu_i.resolutions import BLEND_TIME_PER_CELL
 from grainlaw.validation.cases.speed.setting import Setting
 
 SAFETIES = (0.8, 0.4, 0.2)
@@ -22,20 +21,18 @@ class Reference:
 
     cells            cell sizes [m]
     points_per_cell  material points per cell
-    memory           time constant of the transfer over the cell size [s/m]; None for the default
     """
 
     cells: tuple[float, ...]
     points_per_cell: int = 16
-    memory: float | None = None
 
 
 REFERENCES = {
-    "mu(I)-LC": Reference((1.0 / 200.0, 1.0 / 220.0, 1.0 / 240.0), memory=BLEND_TIME_PER_CELL),
+    "mu(I)-LC": Reference((1.0 / 200.0, 1.0 / 220.0, 1.0 / 240.0)),
     "MCC OCR 1": Reference((1.0 / 180.0, 1.0 / 200.0, 1.0 / 220.0)),
-    "MCC OCR 4": Reference((1.0 / 160.0, 1.0 / 180.0, 1.0 / 200.0), 25, BLEND_TIME_PER_CELL),
+    "MCC OCR 4": Reference((1.0 / 160.0, 1.0 / 180.0, 1.0 / 200.0), 25),
 }
-# On these points and transfer of the reference are compared too, where they are others than the defaults.
+# On these points of the reference are compared too, where they are others than the defaults.
 CELLS_LIKE_REFERENCE = {"mu(I)-LC": (*COARSE_CELLS, FINE_CELL, 1.0 / 120.0, 1.0 / 160.0, 1.0 / 200.0)}
 
 
@@ -50,13 +47,10 @@ def settings(material: str, column: str = "paper") -> list[Setting]:
 
 
 def references(material: str, column: str, cells: Sequence[float] | None = None) -> list[Setting]:
-    """Grids with the points and the transfer of the reference, of its own cell sizes if no others [m] are given."""
+    """Grids with the points of the reference, of its own cell sizes if no others [m] are given."""
     chosen = REFERENCES[material]
     sizes = chosen.cells if cells is None else cells
-    found = [Setting(material, column, cell_size, chosen.points_per_cell) for cell_size in sizes]
-    if chosen.memory is None:
-        return found
-    return [replace(setting, time_constant=chosen.memory * setting.cell_size) for setting in found]
+    return [Setting(material, column, cell_size, chosen.points_per_cell) for cell_size in sizes]
 
 
 def _one_at_a_time(material: str, column: str, cell_size: float) -> Iterator[Setting]:

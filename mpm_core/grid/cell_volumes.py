@@ -1,0 +1,190 @@
+"""The volume that points bring to cells, and which cells are full of material."""
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numba.extending import register_jitable
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from grainlaw.materials.compilation import named
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.grid.grid import Grid
+from grainlaw.mpm_core.kernels.positions import coordinate_of, position_access
+from grainlaw.mpm_core.kernels.sources import CORE_MARK
+
+# A cell with more than this share of its room is material, one with less is air.
+FULL = 0.5
+# Cells from the air within which a free surface lies: there a cell may be less than full without anything missing.
+SURFACE_CELLS = 2
+# Cells of air around what points can reach, so that a free surface never lies at the edge of a window.
+MARGIN = 2
+
+
+class CellWindow(NamedTuple):
+    """The cells around the points with one layer of padding: the part of the grid that volumes are looked at in.
+
+    first     the number, along each axis, of the cell in the first layer of padding
+    shape     cells along each axis, padding included
+    at_walls  along each axis, whether the padding lies beyond the lower and the upper wall of the domain
+    periodic  axes along which the window is the whole domain and closed
+    """
+
+    first: tuple[int, int]
+    shape: tuple[int, int]
+    at_walls: tuple[tuple[bool, bool], tuple[bool, bool]]
+    periodic: tuple[int, ...]
+
+
+class WallGap(NamedTuple):
+    """Where material is off a wall: the lower or the upper one across an axis, for each cell of the domain along it."""
+
+    axis: int
+    is_lower: bool
+    is_open: NDArray[np.bool_]
+
+
+class CellVolumes(NamedTuple):
+    """Shares of the room of each cell of a window.
+
+    fill  of all points
+    held  of those that nothing moves apart: they carry tension, or sleep
+    gaps  along which walls there is air between wall and material
+    """
+
+    window: CellWindow
+    fill: NDArray[np.float64]
+    held: NDArray[np.float64]
+    gaps: Sequence[WallGap] = ()
+
+    @property
+    def is_material(self) -> NDArray[np.bool_]:
+        """Cells that are no air; never the padding."""
+        found = self.fill > FULL
+        for axis in (0, 1):
+            np.moveaxis(found, axis, 0)[[0, -1]] = False
+        return found
+
+    def is_interior(self) -> NDArray[np.bool_]:
+        """Cells of material with no air in `SURFACE_CELLS` around them; a wall is no air where material touches it."""
+        inside = self.is_material[1:-1, 1:-1]
+        for axis in (0, 1):
+            widths = [(SURFACE_CELLS, SURFACE_CELLS) if k == axis else (0, 0) for k in (0, 1)]
+            continued = np.pad(inside, widths, mode="wrap" if axis in self.window.periodic else "edge")
+            self._open_gaps(continued, axis)
+            inside = np.asarray(sliding_window_view(continued, 2 * SURFACE_CELLS + 1, axis=axis).all(axis=-1))
+        return np.pad(inside, 1)
+
+    def _open_gaps(self, continued: NDArray[np.bool_], axis: int) -> None:
+        """Put air beyond the walls across an axis that material is off; the axes before it have their final cells."""
+        layers = np.moveaxis(continued, axis, 0)
+        along = 1 - axis
+        first, cells = self.window.first[along] + 1, self.window.shape[along] - 2
+        for gap in self.gaps:
+            end = 0 if gap.is_lower else 1
+            if gap.axis == axis and self.window.at_walls[axis][end]:
+                beyond = layers[:SURFACE_CELLS] if gap.is_lower else layers[-SURFACE_CELLS:]
+                beyond[:, gap.is_open[first : first + cells]] = False
+
+
+def find_window(bodies: Sequence[Body], grid: Grid, periodic_axes: Sequence[int]) -> CellWindow:
+    """The window around all points, with a margin of air where there is room for it."""
+    first, last, at_walls = [], [], []
+    for axis in (0, 1):
+        cells = grid.cells[axis]
+        ends = [coordinate_of(body.points, axis) for body in bodies]
+        lowest = int((min(float(end.min()) for end in ends) - grid.lower[axis]) / grid.cell_size) - MARGIN
+        highest = int((max(float(end.max()) for end in ends) - grid.lower[axis]) / grid.cell_size) + MARGIN
+        closed = axis in periodic_axes
+        low, high = (0, cells - 1) if closed else (max(lowest, 0), min(highest, cells - 1))
+        first.append(low - 1)
+        last.append(high + 1)
+        at_walls.append((low == 0 and not closed, high == cells - 1 and not closed))
+    shape = (last[0] - first[0] + 1, last[1] - first[1] + 1)
+    return CellWindow((first[0], first[1]), shape, (at_walls[0], at_walls[1]), tuple(periodic_axes))
+
+
+def cell_volumes(
+    bodies: Sequence[Body], grid: Grid, periodic_axes: Sequence[int], gaps: Sequence[WallGap] = ()
+) -> CellVolumes:
+    """Deposit the volumes of all points to the middles of cells, with quadratic weights, mirrored at walls."""
+    window = find_window(bodies, grid, periodic_axes)
+    fill, held = np.zeros(window.shape), np.zeros(window.shape)
+    lower = corner(window, grid)
+    for body in bodies:
+        deposit = _make_deposit(body.precision)
+        loose = body.awake if body.is_loose else 0
+        scale = body.point_mass / grid.cell_size**2
+        deposit(body.storage, 0, loose, scale, lower, grid.cell_size, fill)
+        deposit(body.storage, loose, body.count, scale, lower, grid.cell_size, held)
+    fold_padding(fill, window)
+    fold_padding(held, window)
+    return CellVolumes(window, fill + held, held, gaps)
+
+
+def corner(window: CellWindow, grid: Grid) -> tuple[float, float]:
+    """The lower corner of the first cell of the window, padding included [m]."""
+    return (
+        grid.lower[0] + window.first[0] * grid.cell_size,
+        grid.lower[1] + window.first[1] * grid.cell_size,
+    )
+
+
+def fold_padding(values: NDArray[np.float64], window: CellWindow) -> None:
+    """Give what lies in the padding to the cells it belongs to: beyond a wall its mirror image, or the other end."""
+    for axis in (0, 1):
+        layers = np.moveaxis(values, axis, 0)
+        lower, upper = (-2, 1) if axis in window.periodic else (1, -2)
+        layers[lower] += layers[0]
+        layers[upper] += layers[-1]
+        layers[0] = layers[-1] = 0.0
+
+
+def filled_padding(values: NDArray[Any], window: CellWindow) -> NDArray[Any]:
+    """A copy whose padding continues the cells: beyond a wall their mirror image, along a periodic axis the other end.
+
+    Elsewhere the padding is air, and stays zero.
+    """
+    filled = values.copy()
+    for axis in (0, 1):
+        layers = np.moveaxis(filled, axis, 0)
+        if axis in window.periodic:
+            layers[0], layers[-1] = layers[-2], layers[1]
+        if window.at_walls[axis][0]:
+            layers[0] = layers[1]
+        if window.at_walls[axis][1]:
+            layers[-1] = layers[-2]
+    return filled
+
+
+@register_jitable
+def _weights(place):  # type: ignore[no-untyped-def]
+    """The quadratic B-spline at the middles of a cell and its neighbours, for a place in [0, 1) of it."""
+    f = place - 0.5
+    return 0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f)
+
+
+@cache
+def _make_deposit(precision: str) -> Callable[..., Any]:
+    access = position_access(precision)
+    along, density = access.along, access.density
+
+    @njit(error_model="numpy", cache=True)
+    @named(f"{precision}_{CORE_MARK}")
+    def deposit(storage, begin, end, scale, lower, cell_size, fill):  # type: ignore[no-untyped-def]
+        """Add the volumes of points, times a scale over their mass, in the order in which they lie."""
+        inverse = 1.0 / cell_size
+        for p in range(begin, end):
+            volume = scale / density(storage, p)
+            x, y = (along(storage, 0, p) - lower[0]) * inverse, (along(storage, 1, p) - lower[1]) * inverse
+            # A point on the upper wall belongs to the last cell.
+            i, j = min(int(x), fill.shape[0] - 2), min(int(y), fill.shape[1] - 2)
+            wx, wy = _weights(x - i), _weights(y - j)
+            for a in range(3):
+                for b in range(3):
+                    fill[i + a - 1, j + b - 1] += volume * wx[a] * wy[b]
+
+    return deposit

@@ -1,0 +1,155 @@
+"""Volume projection: points of loose material are moved apart until they leave each cell the room it has.
+
+Points carry volumes that they integrate themselves. In long flows their positions crowd, or thin out, while the volumes
+do not know. An implicit density projection, as for fluids (Kugelstadt, Longva, Thuerey & Bender 2019, IEEE TVCG 27,
+2994), moves the points, and nothing else of them:
+
+    lap psi = V/h^2 - 1,    x <- x + grad psi
+
+with the volume V that points bring to a cell. psi is zero in the air, and nothing moves through a wall, through
+material that carries tension, or through what sleeps. A cell near a free surface, or near a wall that the material does
+not touch, may be less than full; more than full it may not be. Differences of psi across the faces of cells are
+interpolated linearly at the points.
+
+It is done when the fastest point has drifted far enough since the last time: the intervals follow from the motion, not
+from the step, and at rest there are none.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+from grainlaw.materials.compilation import named
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.grid.cell_volumes import CellVolumes, CellWindow, WallGap, cell_volumes, corner, filled_padding
+from grainlaw.mpm_core.grid.elliptic import solve
+from grainlaw.mpm_core.grid.grid import Grid
+from grainlaw.mpm_core.kernels.positions import position_access
+from grainlaw.mpm_core.kernels.sources import CORE_MARK
+
+# The root mean square of what is left of the overfill [1].
+TOLERANCE = 1e-3
+# The compressibility that lets a container that is full to its lid be solved for, in units of the cell size.
+COMPRESSIBILITY = 1e-6
+# Short waves lose most of their height in the deposit and in the interpolation of ways. So much of the overfill itself,
+# in squares of the cell size, makes up for it: a wave four cells long goes in one projection, and none grows.
+SHARPENING = 0.25
+# Cells by which the fastest point may drift between two projections.
+LONGEST_UNPROJECTED = 0.6
+# The longest way of a face, in cells; what is left is done the next time. No point can then pass a wall.
+LONGEST_WAY = 0.25
+
+
+class Projected(NamedTuple):
+    """What a projection did.
+
+    raised       potential energy that the points gained, per width [J/m]
+    bounded      number of faces that would have been moved farther than `LONGEST_WAY`
+    longest_way  of a point [m]
+    iterations   of the solver
+    """
+
+    raised: float
+    bounded: int
+    longest_way: float
+    iterations: int
+
+
+def project_volumes(
+    bodies: Sequence[Body],
+    grid: Grid,
+    periodic_axes: Sequence[int],
+    gravity: tuple[float, float],
+    gaps: Sequence[WallGap] = (),
+) -> Projected:
+    """Move the points of loose bodies that are awake so that each cell has the volume it has room for.
+
+    Points must lie in the domain. Raises SimulationError if the elliptic problem does not converge.
+    """
+    volumes = cell_volumes(bodies, grid, periodic_axes, gaps)
+    overfill = _overfill(volumes)
+    is_unknown = volumes.is_material & (volumes.held <= 0.5 * volumes.fill)
+    conductances = _conductances(volumes, is_unknown)
+    zeroth = np.full(overfill.shape, COMPRESSIBILITY)
+    psi, iterations = solve(zeroth, conductances, is_unknown, -overfill, periodic_axes, TOLERANCE)
+    psi -= SHARPENING * np.where(is_unknown, overfill, 0.0)
+    raised, bounded, longest = 0.0, 0, 0.0
+    if iterations > 0:
+        ways = _ways(psi, conductances, volumes.window)
+        bounded = sum(int(np.count_nonzero(np.abs(way[1:-1, 1:-1]) > LONGEST_WAY)) for way in ways)
+        ways = [np.clip(way, -LONGEST_WAY, LONGEST_WAY) for way in ways]
+        for body in bodies:
+            if body.is_loose:
+                move = _make_move(body.precision)
+                place = corner(volumes.window, grid), grid.cell_size
+                risen, way = move(body.storage, body.awake, *place, *ways, *gravity)
+                raised += body.point_mass * risen
+                longest = max(longest, way)
+    return Projected(raised, bounded, longest, iterations)
+
+
+def _overfill(volumes: CellVolumes) -> NDArray[np.float64]:
+    """V/h^2 - 1 of cells; near a free surface only where it is positive."""
+    excess = volumes.fill - 1.0
+    return np.where(volumes.is_interior(), excess, np.maximum(excess, 0.0))
+
+
+def _conductances(volumes: CellVolumes, is_unknown: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
+    """One for each face, with the next cell along each axis, that points may move through: no wall, nothing held."""
+    is_held = filled_padding(volumes.is_material & ~is_unknown, volumes.window)
+    found = []
+    for axis, (below, above) in enumerate(volumes.window.at_walls):
+        faces = np.where(is_held | np.roll(is_held, -1, axis), 0.0, 1.0)
+        along = np.moveaxis(faces, axis, 0)
+        along[0] *= not below
+        along[-2] *= not above
+        found.append(faces)
+    return found
+
+
+def _ways(
+    psi: NDArray[np.float64], conductances: Sequence[NDArray[np.float64]], window: CellWindow
+) -> list[NDArray[np.float64]]:
+    """What grad psi moves on the face between each cell and the next along each axis, in cells."""
+    continued = filled_padding(psi, window)
+    return [faces * (np.roll(continued, -1, axis) - continued) for axis, faces in enumerate(conductances)]
+
+
+@register_jitable
+def _between(values, x, y):  # type: ignore[no-untyped-def]
+    """Interpolate linearly."""
+    i, j = int(x), int(y)
+    u, v = x - i, y - j
+    lower = values[i, j] + v * (values[i, j + 1] - values[i, j])
+    upper = values[i + 1, j] + v * (values[i + 1, j + 1] - values[i + 1, j])
+    return lower + u * (upper - lower)
+
+
+@cache
+def _make_move(precision: str) -> Callable[..., Any]:
+    access = position_access(precision)
+    along, put_along = access.along, access.put_along
+
+    @njit(error_model="numpy", cache=True)
+    @named(f"{precision}_{CORE_MARK}")
+    def move(storage, count, lower, cell_size, ways_x, ways_y, gravity_x, gravity_y):  # type: ignore[no-untyped-def]
+        """Move points by what the faces around them say; returns what they gained in height times gravity."""
+        inverse, risen, longest = 1.0 / cell_size, 0.0, 0.0
+        for p in range(count):
+            at_x, at_y = along(storage, 0, p), along(storage, 1, p)
+            x, y = (at_x - lower[0]) * inverse, (at_y - lower[1]) * inverse
+            # The face behind cell c is at c + 1, the middle of cell c at c + 1/2.
+            way_x = _between(ways_x, x - 1.0, y - 0.5)
+            way_y = _between(ways_y, x - 0.5, y - 1.0)
+            longest = max(longest, np.sqrt(way_x * way_x + way_y * way_y))
+            put_along(storage, 0, p, at_x + cell_size * way_x)
+            put_along(storage, 1, p, at_y + cell_size * way_y)
+            risen -= cell_size * (gravity_x * way_x + gravity_y * way_y)
+        return risen, cell_size * longest
+
+    return move
