@@ -231,6 +231,10 @@ class BodySection(Section):
     )
 
 
+# More frames, or rows of the history, are a slip of the unit rather than a wish.
+MOST_FRAMES, MOST_HISTORY_ROWS = 100_000, 10_000_000
+
+
 class OutputSection(Section):
     """What a run writes."""
 
@@ -306,6 +310,17 @@ class Scene(Section):
                 raise ValueError(
                     f"boundary.{side} is periodic over {cells} cells of the grid; "
                     f"allowed: {FEWEST_PERIODIC_CELLS} or more"
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _files_stay_countable(self) -> "Scene":
+        for name, most in (("interval", MOST_FRAMES), ("history_interval", MOST_HISTORY_ROWS)):
+            interval = getattr(self.output, name)
+            if interval is not None and self.time.end > most * interval:
+                raise ValueError(
+                    f"output.{name} = {interval:g} s is {self.time.end / interval:.3g} times until time.end = "
+                    f"{self.time.end:g} s; allowed: {most} times or fewer"
                 )
         return self
 
