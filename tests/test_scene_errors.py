@@ -72,7 +72,7 @@ FAULTS = {
                                   r"allowed: velocity, pressure, .*shear_strain.*, body\n"),
     "field like no other": ({"output.picture_field": "temperature"},
                             r"output\.picture_field: unknown field 'temperature'; .*velocity, .*body"),
-    "endless frames": ({"output.interval": 1e-9}, r"output\.interval = 1e-09 s is 1e\+08 times .*100000 times or fewer"),
+    "endless frames": ({"output.interval": 1e-9}, r"output\.interval = 1e-09 s is 1e\+08 times .* 100000 times or"),
     "no body": ({"body": []}, r"body = \[\]: allowed: 1 or more entries"),
     "body is a number": ({"body": 3}, r"body = 3: allowed: a list"),
     "points per cell": ({"body.0.points_per_cell": 5}, r"body\.0\.points_per_cell = 5: allowed: 1, 4, 9, 16, 25 or 36"),
