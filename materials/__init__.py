@@ -12,6 +12,7 @@ from grainlaw.materials.elastic_energy import (
 from grainlaw.materials.errors import InputError, SimulationError
 from grainlaw.materials.law import HOOK_VERSION, Law, ParameterSet
 from grainlaw.materials.opening import StrainInContact, strain_in_contact
+from grainlaw.materials.order import larger, not_larger, not_smaller
 from grainlaw.materials.pointwise import pointwise
 from grainlaw.materials.registry import get_material, hookimpl, registry
 from grainlaw.materials.resolution import Resolution
@@ -67,7 +68,10 @@ __all__ = [
     "hookimpl",
     "inertial_number",
     "isotropic",
+    "larger",
     "longitudinal_wave_speed",
+    "not_larger",
+    "not_smaller",
     "pointwise",
     "pressure",
     "registry",

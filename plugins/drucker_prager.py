@@ -44,6 +44,7 @@ from grainlaw.materials import (
     half_norm,
     hookimpl,
     isotropic,
+    not_larger,
     pointwise,
     pressure,
     shear_modulus,
@@ -151,12 +152,7 @@ def stored_energy(stress: SymmetricTensor, density: float, state: State, paramet
 
 def inconsistency(parameters: Parameters) -> str:
     """Flow that dilates more than friction allows would give out energy."""
-    if parameters.dilatancy_angle <= parameters.friction_angle:
-        return ""
-    return (
-        f"dilatancy_angle = {parameters.dilatancy_angle:g} must not be larger than "
-        f"friction_angle = {parameters.friction_angle:g}"
-    )
+    return not_larger(parameters, "dilatancy_angle", "friction_angle")
 
 
 ALUMINIUM_BARS = Parameters(

@@ -38,6 +38,7 @@ from grainlaw.materials import (
     deviatoric_stress,
     hookimpl,
     isotropic,
+    larger,
     longitudinal_wave_speed,
     pointwise,
     pressure,
@@ -151,12 +152,7 @@ def smallest_yield_surface(parameters: Parameters) -> float:
 
 def inconsistency(parameters: Parameters) -> str:
     """Compression has to be softer than swelling."""
-    if parameters.compression_index > parameters.swelling_index:
-        return ""
-    return (
-        f"compression_index = {parameters.compression_index:g} must be larger than "
-        f"swelling_index = {parameters.swelling_index:g}"
-    )
+    return larger(parameters, "compression_index", "swelling_index")
 
 
 def density_on_compression_line(mean_pressure: float, parameters: Parameters) -> float:

@@ -39,6 +39,7 @@ from grainlaw.materials import (
     half_norm,
     hookimpl,
     isotropic,
+    not_smaller,
     pressure,
     shear_modulus,
     stress_ratio,
@@ -117,12 +118,7 @@ def stored_energy(stress: SymmetricTensor, density: float, state: State, paramet
 
 def inconsistency(parameters: Parameters) -> str:
     """Friction may not fall with the shear rate: slow and fast flow would then be possible at one stress."""
-    if parameters.dynamic_friction >= parameters.static_friction:
-        return ""
-    return (
-        f"dynamic_friction = {parameters.dynamic_friction:g} must not be smaller than "
-        f"static_friction = {parameters.static_friction:g}"
-    )
+    return not_smaller(parameters, "dynamic_friction", "static_friction")
 
 
 def density_above_critical(mean_pressure: float, parameters: Parameters) -> float:

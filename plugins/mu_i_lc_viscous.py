@@ -32,6 +32,7 @@ from grainlaw.materials import (
     energy_of_linear_compression,
     half_norm,
     hookimpl,
+    not_smaller,
     pointwise,
     pressure,
     stress_ratio,
@@ -127,12 +128,7 @@ def viscosity(
 
 def inconsistency(parameters: Parameters) -> str:
     """Friction may not fall with the shear rate: slow and fast flow would then be possible at one stress."""
-    if parameters.dynamic_friction >= parameters.static_friction:
-        return ""
-    return (
-        f"dynamic_friction = {parameters.dynamic_friction:g} must not be smaller than "
-        f"static_friction = {parameters.static_friction:g}"
-    )
+    return not_smaller(parameters, "dynamic_friction", "static_friction")
 
 
 def density_of_table_1(mean_pressure: float, parameters: Parameters) -> float:

@@ -46,7 +46,9 @@ from grainlaw.materials import (
     deviatoric_stress,
     hookimpl,
     isotropic,
+    larger,
     longitudinal_wave_speed,
+    not_smaller,
     pointwise,
     pressure,
     shear_modulus,
@@ -178,17 +180,9 @@ def smallest_yield_surface(parameters: Parameters) -> float:
 
 def inconsistency(parameters: Parameters) -> str:
     """Compression has to be softer than swelling, and friction may not fall with the shear rate."""
-    if parameters.compression_index <= parameters.swelling_index:
-        return (
-            f"compression_index = {parameters.compression_index:g} must be larger than "
-            f"swelling_index = {parameters.swelling_index:g}"
-        )
-    if parameters.dynamic_state_ratio < parameters.critical_state_ratio:
-        return (
-            f"dynamic_state_ratio = {parameters.dynamic_state_ratio:g} must not be smaller than "
-            f"critical_state_ratio = {parameters.critical_state_ratio:g}"
-        )
-    return ""
+    return larger(parameters, "compression_index", "swelling_index") or not_smaller(
+        parameters, "dynamic_state_ratio", "critical_state_ratio"
+    )
 
 
 def density_on_compression_line(mean_pressure: float, parameters: Parameters) -> float:

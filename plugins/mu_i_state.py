@@ -56,6 +56,8 @@ from grainlaw.materials import (
     hookimpl,
     isotropic,
     longitudinal_wave_speed,
+    not_larger,
+    not_smaller,
     pointwise,
     pressure,
     shear_modulus,
@@ -325,22 +327,11 @@ def stored_energy(stress: SymmetricTensor, density: float, state: State, paramet
 
 def inconsistency(parameters: Parameters) -> str:
     """Friction may not fall with the shear rate; flow may not be densest at its loosest, nor denser than rest."""
-    if parameters.dynamic_friction < parameters.static_friction:
-        return (
-            f"dynamic_friction = {parameters.dynamic_friction:g} must not be smaller than "
-            f"static_friction = {parameters.static_friction:g}"
-        )
-    if parameters.loosest_solid_fraction > parameters.critical_solid_fraction:
-        return (
-            f"loosest_solid_fraction = {parameters.loosest_solid_fraction:g} must not be larger than "
-            f"critical_solid_fraction = {parameters.critical_solid_fraction:g}"
-        )
-    if parameters.resting_solid_fraction < parameters.critical_solid_fraction:
-        return (
-            f"resting_solid_fraction = {parameters.resting_solid_fraction:g} must not be smaller than "
-            f"critical_solid_fraction = {parameters.critical_solid_fraction:g}"
-        )
-    return ""
+    return (
+        not_smaller(parameters, "dynamic_friction", "static_friction")
+        or not_larger(parameters, "loosest_solid_fraction", "critical_solid_fraction")
+        or not_smaller(parameters, "resting_solid_fraction", "critical_solid_fraction")
+    )
 
 
 def density_at_rest(mean_pressure: float, parameters: Parameters) -> float:
