@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
-from numba.extending import register_jitable
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
@@ -14,6 +13,7 @@ from grainlaw.materials.compilation import named
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.kernels.positions import coordinate_of, position_access
+from grainlaw.mpm_core.kernels.shape_functions import quadratic_weights
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 
 # A cell with more than this share of its room is material, one with less is air.
@@ -67,6 +67,11 @@ class CellVolumes(NamedTuple):
         for axis in (0, 1):
             np.moveaxis(found, axis, 0)[[0, -1]] = False
         return found
+
+    @property
+    def is_held(self) -> NDArray[np.bool_]:
+        """Cells of material most of which nothing moves apart."""
+        return self.is_material & (self.held > 0.5 * self.fill)
 
     def is_interior(self) -> NDArray[np.bool_]:
         """Cells of material with no air in `SURFACE_CELLS` around them; a wall is no air where material touches it."""
@@ -160,13 +165,6 @@ def filled_padding(values: NDArray[Any], window: CellWindow) -> NDArray[Any]:
     return filled
 
 
-@register_jitable
-def _weights(place):  # type: ignore[no-untyped-def]
-    """The quadratic B-spline at the middles of a cell and its neighbours, for a place in [0, 1) of it."""
-    f = place - 0.5
-    return 0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f)
-
-
 @cache
 def _make_deposit(precision: str) -> Callable[..., Any]:
     access = position_access(precision)
@@ -182,7 +180,8 @@ def _make_deposit(precision: str) -> Callable[..., Any]:
             x, y = (along(storage, 0, p) - lower[0]) * inverse, (along(storage, 1, p) - lower[1]) * inverse
             # A point on the upper wall belongs to the last cell.
             i, j = min(int(x), fill.shape[0] - 2), min(int(y), fill.shape[1] - 2)
-            wx, wy = _weights(x - i), _weights(y - j)
+            # From the middle of the cell before.
+            wx, wy = quadratic_weights(x - i + 0.5), quadratic_weights(y - j + 0.5)
             for a in range(3):
                 for b in range(3):
                     fill[i + a - 1, j + b - 1] += volume * wx[a] * wy[b]

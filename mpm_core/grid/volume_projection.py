@@ -73,8 +73,8 @@ def project_volumes(
     """
     volumes = cell_volumes(bodies, grid, periodic_axes, gaps)
     overfill = _overfill(volumes)
-    is_unknown = volumes.is_material & (volumes.held <= 0.5 * volumes.fill)
-    conductances = _conductances(volumes, is_unknown)
+    is_unknown = volumes.is_material & ~volumes.is_held
+    conductances = _conductances(volumes)
     zeroth = np.full(overfill.shape, COMPRESSIBILITY)
     psi, iterations = solve(zeroth, conductances, is_unknown, -overfill, periodic_axes, TOLERANCE)
     psi -= SHARPENING * np.where(is_unknown, overfill, 0.0)
@@ -99,9 +99,9 @@ def _overfill(volumes: CellVolumes) -> NDArray[np.float64]:
     return np.where(volumes.is_interior(), excess, np.maximum(excess, 0.0))
 
 
-def _conductances(volumes: CellVolumes, is_unknown: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
+def _conductances(volumes: CellVolumes) -> list[NDArray[np.float64]]:
     """One for each face, with the next cell along each axis, that points may move through: no wall, nothing held."""
-    is_held = filled_padding(volumes.is_material & ~is_unknown, volumes.window)
+    is_held = filled_padding(volumes.is_held, volumes.window)
     found = []
     for axis, (below, above) in enumerate(volumes.window.at_walls):
         faces = np.where(is_held | np.roll(is_held, -1, axis), 0.0, 1.0)

@@ -42,7 +42,7 @@ class InteriorOverfill:
 def interior_overfill(simulation: Simulation) -> InteriorOverfill:
     """Measure it over cells of loose material that are far enough from any free surface; zero where there is none."""
     volumes = cell_volumes(simulation.bodies, simulation.grid, simulation.periodic_axes)
-    inside = volumes.fill[volumes.is_interior() & (volumes.held <= 0.5 * volumes.fill)] - 1.0
+    inside = volumes.fill[volumes.is_interior() & ~volumes.is_held] - 1.0
     return InteriorOverfill(float(inside.mean()), float(inside.std())) if inside.size else InteriorOverfill(0.0, 0.0)
 
 
