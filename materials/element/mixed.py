@@ -10,7 +10,6 @@
 A component that a stage does not name has no strain rate. Frame and density are as in `driver`.
 """
 
-import tomllib
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple, Self, get_args
 
@@ -21,6 +20,7 @@ from grainlaw.materials.element.settings import ElementTest, GrainDensity, Initi
 from grainlaw.materials.errors import InputError, nearest_name
 from grainlaw.materials.faults import fault_in_words
 from grainlaw.materials.tensor import SymmetricTensor
+from grainlaw.materials.toml_file import read_toml
 
 Component = Literal["xx", "yy", "zz", "xy", "yz", "xz"]
 COMPONENTS: tuple[Component, ...] = get_args(Component)
@@ -79,9 +79,7 @@ class MixedControl(BaseModel):
 def read_control(path: Path) -> MixedControl:
     """The control in a TOML file. Raises InputError with the first fault."""
     try:
-        return MixedControl.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"control file {path} cannot be read: {error}") from error
+        return MixedControl.model_validate(read_toml(path, "control file"))
     except ValidationError as error:
         raise InputError(f"control file {path}: {_first_fault(error)}") from error
 

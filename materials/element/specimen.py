@@ -1,7 +1,6 @@
 """The specimen of an element test: a law with its parameter values, where they came from, and its density at rest."""
 
 import math
-import tomllib
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from grainlaw.materials.element.settings import ElementTest
 from grainlaw.materials.errors import InputError, InputWarning, nearest_name
 from grainlaw.materials.law import Law
 from grainlaw.materials.registry import get_material
+from grainlaw.materials.toml_file import read_toml
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def base_values(law: Law, parameters: str | Path | None) -> tuple[dict[str, Any]
     name = str(parameters)
     label = f"{law.name} {Path(name).stem}"
     if name.endswith(".toml"):
-        return _read_values(Path(name)), label, f"file {name}"
+        return read_toml(Path(name), "parameter file"), label, f"file {name}"
     if name not in law.parameter_sets:
         raise InputError(f"{law.name} has no parameter set '{name}'; {nearest_name(name, law.parameter_sets)}")
     found = law.parameter_sets[name]
@@ -108,13 +108,6 @@ def _own_settings(law: Law, parameters: str | Path | None, test: ElementTest) ->
     sets = law.parameter_sets
     chosen = sets.get(str(parameters)) or next(iter(sets.values()), None)
     return chosen.element_settings.get(test.name, {}) if chosen else {}
-
-
-def _read_values(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"parameter file {path} cannot be read: {error}") from error
 
 
 def _sorted_out(

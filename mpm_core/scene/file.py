@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from grainlaw.materials import InputError
+from grainlaw.materials.toml_file import read_toml
 
 
 def read_content(path: Path, overrides: Mapping[str, Any]) -> dict[str, Any]:
@@ -48,9 +49,9 @@ def _take_in_parameter_file(table: Any, scene: Path) -> None:
         return
     file = scene.parent / str(name)
     try:
-        values = tomllib.loads(file.read_text(encoding="utf-8-sig"))
-    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{scene}: parameter file {file} cannot be read: {error}") from None
+        values = read_toml(file, "parameter file")
+    except InputError as error:
+        raise InputError(f"{scene}: {error}") from None
     for key, value in values.items():
         table.setdefault(key, value)
 
