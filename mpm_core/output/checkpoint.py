@@ -11,7 +11,8 @@ from grainlaw.materials.compilation import mark_of_law
 from grainlaw.materials.law import Law
 from grainlaw.mpm_core.grid.active_nodes import active_between
 from grainlaw.mpm_core.ledger import Ledger
-from grainlaw.mpm_core.output.hdf5_file import new_hdf5
+from grainlaw.mpm_core.output.hdf5_file import sealed_hdf5
+from grainlaw.mpm_core.output.hdf5_reading import UNREADABLE, existing_hdf5, numbers_of
 from grainlaw.mpm_core.simulation import Simulation
 
 CHECKPOINT_NAME = "checkpoint.h5"
@@ -44,7 +45,7 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
         "signal_speed": simulation.signal_speed,
         "strain_rate": simulation.strain_rate,
     }
-    with atomic.replacing(folder / CHECKPOINT_NAME) as partial, new_hdf5(partial) as file:
+    with atomic.replacing(folder / CHECKPOINT_NAME) as partial, sealed_hdf5(partial) as file:
         file.attrs.update(scalars)
         for name, part in (("clock", clock), ("ledger", simulation.ledger)):
             file.create_group(name).attrs.update(asdict(part))
@@ -75,20 +76,20 @@ def read_checkpoint(folder: Path, simulation: Simulation) -> Clock:
     if not path.is_file():
         raise InputError(f"{folder} holds no {CHECKPOINT_NAME} to resume from; --overwrite starts the run again")
     try:
-        with h5py.File(path) as file:
+        with existing_hdf5(path) as file:
             return _restore(file, simulation)
-    except (OSError, KeyError, TypeError) as error:
-        raise InputError(f"{path} cannot be read: {error}") from error
     except ValueError as error:
         raise InputError(f"{path} belongs to another scene: {error}") from error
+    except UNREADABLE as error:
+        raise InputError(f"{path} cannot be read: {error}") from error
 
 
 def refuse_other_laws(folder: Path, laws: Sequence[Law]) -> None:
     """Raises InputError where the law of a body is not what it was, in its own file or in what it takes from others."""
     try:
-        with h5py.File(folder / CHECKPOINT_NAME) as file:
+        with existing_hdf5(folder / CHECKPOINT_NAME) as file:
             marks = [str(file[f"body/{number}"].attrs["law_mark"]) for number in range(len(laws))]
-    except (OSError, KeyError):
+    except UNREADABLE:
         return  # what is wrong with it is said where it is read
     for law, mark in zip(laws, marks, strict=True):
         if mark != mark_of_law(law):
@@ -102,9 +103,9 @@ def how_to_go_on(folder: Path) -> str:
     """What can be done with a run that was stopped: from when, and from which file."""
     path = folder / CHECKPOINT_NAME
     try:
-        with h5py.File(path) as file:
+        with existing_hdf5(path) as file:
             return f"--resume goes on from t = {float(file.attrs['time']):.6g} s, last checkpoint: {path}"
-    except (OSError, KeyError):
+    except (*UNREADABLE, InputError):
         return "there is no checkpoint yet: --overwrite begins the run again"
 
 
@@ -113,16 +114,16 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
         group = file[f"body/{number}"]
         if group["points"].shape != body.points.shape:
             raise ValueError(f"body {number} has {group['points'].shape} values, not {body.points.shape}")
-        body.points[:] = group["points"][:]
-        body.ids = group["ids"][:]
-        body.stripe_starts = group["stripe_starts"][:]
+        body.points[:] = numbers_of(group["points"])
+        body.ids = numbers_of(group["ids"])
+        body.stripe_starts = numbers_of(group["stripe_starts"])
         body.set_awake(int(group.attrs["awake"]))
         body.signal_speed_asleep = float(group.attrs["signal_speed_asleep"])
     if simulation.sleep is not None:
         simulation.sleep.started = float(file["sleep"].attrs["started"])
         for number, positions in enumerate(simulation.sleep.positions):
-            positions[:] = file[f"sleep/positions/{number}"][:]
-        simulation.sleep.withheld = file["sleep/withheld"][:]
+            positions[:] = numbers_of(file[f"sleep/positions/{number}"])
+        simulation.sleep.withheld = numbers_of(file["sleep/withheld"])
         simulation.sleep.bring_sleepers()
     simulation.time = float(file.attrs["time"])
     simulation.steps = int(file.attrs["steps"])
@@ -132,7 +133,7 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     simulation.last_step = float(file.attrs["last_step"])
     simulation.signal_speed = float(file.attrs["signal_speed"])
     simulation.strain_rate = float(file.attrs["strain_rate"])
-    simulation.keep_to(active_between(*(file[f"active/{name}"][:] for name in ACTIVE_ROWS)))
+    simulation.keep_to(active_between(*(numbers_of(file[f"active/{name}"]) for name in ACTIVE_ROWS)))
     simulation.ledger = Ledger(**{name: float(value) for name, value in file["ledger"].attrs.items()})
     clock = file["clock"].attrs
     counts = {name: int(clock[name]) for name in ("next_frame", "next_history", "history_rows")}

@@ -4,6 +4,7 @@ The library may crash the process when its own writes fail, at once or at its en
 to write to, which never fails; what the disk says is raised when the library is done with the file.
 """
 
+import hashlib
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,6 +12,11 @@ from pathlib import Path
 from typing import IO, Any
 
 import h5py
+
+from grainlaw.materials import InputError
+
+USER_BLOCK = 512  # bytes, the least that HDF5 leaves to others
+SEAL = b"grainlaw, SHA-256 of what follows the first 512 bytes:\n"
 
 
 @contextmanager
@@ -42,6 +48,34 @@ def changed_hdf5(path: Path) -> Iterator[h5py.File]:
             yield file
     with path.open("r+b", buffering=0) as raw:
         changes.put_into(raw)
+
+
+@contextmanager
+def sealed_hdf5(path: Path) -> Iterator[h5py.File]:
+    """A new file like `new_hdf5`, with the digest of all else in its user block, by which damage is told."""
+    with new_hdf5(path, userblock_size=USER_BLOCK) as file:
+        yield file
+    with path.open("r+b", buffering=0) as raw:
+        seal = SEAL + _digest(raw)
+        raw.seek(0)
+        raw.write(seal)
+
+
+def is_sealed(path: Path) -> bool:
+    """Whether a file holds a digest. Raises InputError where that is not the digest of the file."""
+    with path.open("rb") as raw:
+        start = raw.read(USER_BLOCK)
+        if not start.startswith(SEAL):
+            return False
+        if not start.startswith(SEAL + _digest(raw)):
+            raise InputError(f"{path} is damaged: it is not as it was written")
+        return True
+
+
+def _digest(raw: IO[bytes]) -> bytes:
+    """Of all that follows the user block."""
+    raw.seek(USER_BLOCK)
+    return hashlib.file_digest(raw, "sha256").digest()  # type: ignore[arg-type]
 
 
 class _Shield:

@@ -8,6 +8,7 @@ from grainlaw.materials import InputError, atomic
 from grainlaw.mpm_core.output.checkpoint import CHECKPOINT_NAME, Clock, read_checkpoint
 from grainlaw.mpm_core.output.folder_lock import held
 from grainlaw.mpm_core.output.frame_series import COLLECTION_NAME, FrameSeries
+from grainlaw.mpm_core.output.hdf5_reading import UNREADABLE
 from grainlaw.mpm_core.output.history import HISTORY_NAME, keep_rows
 from grainlaw.mpm_core.output.quantities import QUANTITIES_NAME
 from grainlaw.mpm_core.output.run_folder import SCENE_NAME, RunFolder
@@ -84,7 +85,7 @@ def _rewind_vtkhdf(folder: Path, simulation: Simulation) -> None:
         return
     try:
         drop_after(path, simulation.time)
-    except (OSError, KeyError) as error:
+    except (*UNREADABLE, InputError) as error:
         if isinstance(error, OSError) and error.errno:
             raise
         raise InputError(f"{path} was damaged when the run was stopped; --overwrite starts the run again") from error

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from grainlaw.materials import atomic
 from grainlaw.mpm_core.output.frame import Frame
 from grainlaw.mpm_core.output.hdf5_file import changed_hdf5, new_hdf5
+from grainlaw.mpm_core.output.hdf5_reading import numbers_of, refuse_endless
 
 VTKHDF_NAME = "run.vtkhdf"
 _CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
@@ -42,23 +43,28 @@ def append_frame(path: Path, frame: Frame) -> None:
 
 
 def drop_after(path: Path, time: float) -> None:
-    """Cut off the frames later than `time` [s], that of the checkpoint from which the run resumes."""
+    """Cut off the frames later than `time` [s], that of the checkpoint from which the run resumes.
+
+    Raises InputError, or what h5py raises, for a damaged file.
+    """
     if not path.exists():
         return
+    refuse_endless(path)
     with changed_hdf5(path) as file:
         root = file["VTKHDF"]
         steps = root["Steps"]
-        kept = int(np.count_nonzero(steps["Values"][: int(steps.attrs["NSteps"])] <= time))
-        points = int(root["NumberOfPoints"][0])
+        kept = int(np.count_nonzero(numbers_of(steps["Values"])[: int(steps.attrs["NSteps"])] <= time))
+        points = root["Points"].chunks[0]
         steps.attrs["NSteps"] = kept
         by_point = [root["Points"], *root["PointData"].values()]
         by_step = [root["NumberOfPoints"], *(found for found in steps.values() if isinstance(found, h5py.Dataset))]
         by_step += steps["PointDataOffsets"].values()
         by_step += [root[kind][name] for kind in _CELL_KINDS for name in ("NumberOfCells", "NumberOfConnectivityIds")]
-        for dataset in by_step:
-            dataset.resize(kept, axis=0)
-        for dataset in by_point:
-            dataset.resize(kept * points, axis=0)
+        for datasets, rows in ((by_step, kept), (by_point, kept * points)):
+            for dataset in datasets:
+                if len(dataset) < rows:
+                    raise ValueError(f"{dataset.name} has {len(dataset)} rows, fewer than {rows}")
+                dataset.resize(rows, axis=0)
 
 
 def _create_layout(root: h5py.Group, frame: Frame) -> None:

@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import re
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,6 +10,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from grainlaw.materials import InputError
 
 Points = NDArray[np.float64]
 Groups = dict[str, list[NDArray[np.bool_]]]
@@ -24,6 +27,7 @@ OUTLINES = {
     "quad9": (4, 1),
 }
 NO_AREA = ("vertex", "line")
+HDF5_SUFFIXES = (".cgns", ".h5m", ".hmf", ".med")
 FLAT = 1e-9  # of the size of a mesh
 FARTHEST = 1e9  # m
 
@@ -126,12 +130,18 @@ def _read_mesh(file: Path) -> Any:
     """The mesh of a file. Raises ValueError in one line: meshio itself prints several and leaves the process."""
     import meshio
 
+    from grainlaw.mpm_core.output.hdf5_reading import refuse_endless
+
     if not file.is_file():
         raise ValueError(f"there is no mesh file {file}")
     said = io.StringIO()
     try:
+        for part in _hdf5_files(file):
+            refuse_endless(part)
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), _entities_without_group():
             return meshio.read(file)
+    except InputError as error:
+        raise ValueError(str(error)) from error
     except meshio.ReadError as error:
         raise ValueError(f"cannot read mesh file {file}: {_one_line(str(error))}") from error
     except (Exception, SystemExit) as error:  # meshio raises whatever its parser meets
@@ -139,6 +149,16 @@ def _read_mesh(file: Path) -> Any:
         raise ValueError(
             f"cannot read mesh file {file}: it is no valid {file.suffix} file ({_one_line(reason)})"
         ) from error
+
+
+def _hdf5_files(file: Path) -> Iterator[Path]:
+    """The files in HDF5 that meshio opens for a mesh: itself, or those that an XDMF file names."""
+    if file.suffix in HDF5_SUFFIXES:
+        yield file
+    elif file.suffix in (".xdmf", ".xmf"):
+        for name in set(re.findall(r">\s*([^<>:]+?):/", file.read_text(errors="replace"))):
+            if (file.parent / name).is_file():
+                yield file.parent / name
 
 
 def _one_line(text: str) -> str:

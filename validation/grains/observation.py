@@ -15,6 +15,7 @@ import numpy as np
 
 from grainlaw.materials import InputError, atomic
 from grainlaw.materials.errors import nearest_name
+from grainlaw.mpm_core.output.hdf5_reading import UNREADABLE, existing_hdf5, numbers_of
 from grainlaw.validation.grains.snapshot import Array
 
 FORMAT_ATTRIBUTE = "grainlaw_observation"
@@ -107,16 +108,16 @@ def _write(file: h5py.File, name: str, values: Array, unit: str) -> None:
 def is_observation(path: Path) -> bool:
     """Whether a file is an observation in HDF5."""
     try:
-        with h5py.File(path) as file:
+        with existing_hdf5(path) as file:
             return FORMAT_ATTRIBUTE in file.attrs
-    except (OSError, RuntimeError, KeyError):
+    except UNREADABLE:
         return False
 
 
 def read_observation(path: Path) -> Observation:
     """Read an observation. Raises InputError in one line for a damaged file or one of another kind."""
     try:
-        with h5py.File(path) as file:
+        with existing_hdf5(path) as file:
             if file.attrs.get(FORMAT_ATTRIBUTE) != FORMAT_VERSION:
                 raise InputError(f"{path} is no observation of format {FORMAT_VERSION}")
             read = Observation(
@@ -129,7 +130,7 @@ def read_observation(path: Path) -> Observation:
                 snapshot_times=_read(file, "snapshots/time"),
                 snapshots={name: _read(file, f"snapshots/{name}") for name in file["snapshots"] if name != "time"},
             )
-    except (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError) as error:
+    except UNREADABLE as error:
         raise InputError(f"{path} cannot be read as an observation: {error}") from None
     if read.surface.shape != (len(read.times), len(read.x)):
         raise InputError(
@@ -139,4 +140,4 @@ def read_observation(path: Path) -> Observation:
 
 
 def _read(file: h5py.File, name: str) -> Array:
-    return np.asarray(file[name], float)
+    return numbers_of(file[name]).astype(float)

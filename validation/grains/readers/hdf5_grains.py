@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import h5py
-import numpy as np
 
 from grainlaw.materials import InputError
+from grainlaw.mpm_core.output.hdf5_reading import UNREADABLE, existing_hdf5, numbers_of
 from grainlaw.validation.grains.readers.raw_frame import RawFrame
 from grainlaw.validation.grains.readers.text_file import is_packed
 
@@ -28,13 +28,12 @@ def frames(path: Path) -> Iterator[RawFrame]:
     if is_packed(path):
         raise InputError(f"{path} is packed by gzip, which HDF5 does not read; unpack it first")
     try:
-        with h5py.File(path) as file:
+        with existing_hdf5(path) as file:
             if FRAMES not in file or len(file[FRAMES]) == 0:
                 raise InputError(f"{path} has no group '{FRAMES}' with grains in it")
             for name in sorted(file[FRAMES]):
                 yield _frame(path, name, file[FRAMES][name])
-    except (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError) as error:
-        # What the library raises for a damaged file, and what the parts of a file of another kind lead to.
+    except UNREADABLE as error:
         raise InputError(f"{path} cannot be read as HDF5: {error}") from None
 
 
@@ -50,7 +49,7 @@ def _frame(path: Path, name: str, group: h5py.Group) -> RawFrame:
             if key in ("position", "radius"):
                 raise InputError(f"{path}: {FRAMES}/{name} has no dataset '{key}'")
             continue
-        values = np.asarray(group[key], float)
+        values = numbers_of(group[key]).astype(float)
         if values.ndim != shape or (shape == 2 and values.shape[1] != 3):
             wanted = "(n, 3)" if shape == 2 else "(n,)"
             raise InputError(f"{path}: {FRAMES}/{name}/{key} has the shape {values.shape}, expected {wanted}")

@@ -1,0 +1,72 @@
+"""A process of its own that goes through HDF5 files, so that nobody else hangs or dies of a damaged one.
+
+A line of JSON asks for a file: its path and the processor time that it may take [s]; the answer is an empty line. A
+file that takes longer, or on which the library crashes, ends the process without an answer. Everything is touched that
+a reader may touch but the numbers of datasets: groups, links, attributes, the index of the chunks. What can be read of
+it is not judged here.
+"""
+
+import json
+import math
+import resource
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+
+import h5py
+
+# Whatever the library or the conversion of a value raises has come to an end.
+FINITE = Exception
+
+
+def walk(group: h5py.Group, seen: set[tuple[int, int]]) -> None:
+    """Touch all that lies in a group; a group that is linked into itself is gone through once."""
+    _touch_attributes(group)
+    for name in _names(group):
+        with suppress(FINITE):
+            found = group[name]
+            place = h5py.h5o.get_info(found.id)
+            if (place.fileno, place.addr) in seen:
+                continue
+            seen.add((place.fileno, place.addr))
+            if isinstance(found, h5py.Group):
+                walk(found, seen)
+            else:
+                _touch_attributes(found)
+                if isinstance(found, h5py.Dataset) and found.chunks is not None:
+                    found.id.chunk_iter(lambda _: None)
+
+
+def _touch_attributes(found: h5py.HLObject) -> None:
+    for name in _names(found.attrs):
+        with suppress(FINITE):
+            found.attrs[name]
+
+
+def _names(mapping: Any) -> Iterator[str]:
+    with suppress(FINITE):
+        yield from list(mapping)
+
+
+def limit_processor_time(seconds: float) -> None:
+    """End this process `seconds` of processor time from now."""
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    _, highest = resource.getrlimit(resource.RLIMIT_CPU)
+    wanted = math.ceil(used.ru_utime + used.ru_stime + seconds)
+    resource.setrlimit(resource.RLIMIT_CPU, (wanted if highest < 0 else min(wanted, highest), highest))
+
+
+def main() -> None:
+    """Answer until nobody asks any more."""
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    for line in sys.stdin:
+        path, seconds = json.loads(line)
+        limit_processor_time(seconds)
+        with suppress(FINITE), h5py.File(path) as file:
+            walk(file, set())
+        print(flush=True)
+
+
+if __name__ == "__main__":
+    main()
