@@ -154,7 +154,7 @@ def test_a_table_gives_the_vertical_stress_over_depth_below_the_free_top():
         ({"depth": [0.0, 0.8]}, "lists of one length"),
         ({"vertical_stress": None}, "needs depth and vertical_stress"),
         ({"depth": [0.0, 0.9, 0.8]}, "depth must increase"),
-        ({"vertical_stress": [0.0, -1.0, 2.0]}, "vertical_stress holds -1 Pa; allowed: >= 0"),
+        ({"vertical_stress": [0.0, -1.0, 2.0]}, "vertical_stress holds -1 Pa; allowed: 0 to 1e\\+12 Pa"),
         ({"kind": "geostatic"}, "depth and vertical_stress belong to kind = 'table'"),
     ],
 )

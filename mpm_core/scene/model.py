@@ -16,6 +16,9 @@ from grainlaw.mpm_core.scene.file import read_content
 from grainlaw.mpm_core.scene.presets import with_settings_for_accuracy
 from grainlaw.mpm_core.scene.shapes import AnyShape, Corner
 
+# Beyond these a number is a slip of the unit, or overflows on its way through a run.
+LARGEST_SPEED, LARGEST_GRAVITY, LARGEST_DENSITY = 1e6, 1e6, 1e6  # m/s, m/s2, kg/m3
+LARGEST_PRESSURE, LARGEST_RATIO = 1e12, 1e3  # Pa, 1
 # The widest stencil: over fewer cells it would reach the same node twice.
 FEWEST_PERIODIC_CELLS = 4
 
@@ -24,6 +27,14 @@ class Section(BaseModel):
     """A table of a scene file; unknown keys are refused."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
+
+
+def _at_most(vector: Corner, largest: float, unit: str) -> Corner:
+    """The vector. Raises ValueError if one of its components is larger, or negative and larger."""
+    for component in vector:
+        if abs(component) > largest:
+            raise ValueError(f"{component:g} {unit} is out of bounds; allowed: {-largest:g} to {largest:g} {unit}")
+    return vector
 
 
 class GridSection(Section):
@@ -62,7 +73,10 @@ class WallSection(Section):
     )
     coefficient: float = Field(default=0.0, ge=0, description="Coulomb friction coefficient of a friction wall [1]")
     velocity: float = Field(
-        default=0.0, description="speed at which a friction or no_slip wall slides along itself, towards +x or +y [m/s]"
+        default=0.0,
+        ge=-LARGEST_SPEED,
+        le=LARGEST_SPEED,
+        description="speed at which a friction or no_slip wall slides along itself, towards +x or +y [m/s]",
     )
 
     @model_validator(mode="after")
@@ -167,18 +181,20 @@ class InitialStressSection(Section):
         description="no stress, a uniform pressure, the weight of the material above, of all bodies, or a table over "
         "depth",
     )
-    pressure: float = Field(default=0.0, ge=0, description="pressure of kind = 'uniform' [Pa]")
+    pressure: float = Field(default=0.0, ge=0, le=LARGEST_PRESSURE, description="pressure of kind = 'uniform' [Pa]")
     horizontal_ratio: float = Field(
-        default=1.0, ge=0, description="sigma_xx/sigma_yy, unless the stress is uniform [1]"
+        default=1.0, ge=0, le=LARGEST_RATIO, description="sigma_xx/sigma_yy, unless the stress is uniform [1]"
     )
     out_of_plane_ratio: float = Field(
         default=0.5,
         ge=0,
+        le=LARGEST_RATIO,
         description="sigma_zz/(sigma_xx + sigma_yy), unless the stress is uniform; 0.5 with ratio 1: isotropic [1]",
     )
     surcharge: float = Field(
         default=0.0,
         ge=0,
+        le=LARGEST_PRESSURE,
         description="load on the body where nothing covers it, for kind = 'geostatic'; what lies below carries it, "
         "too [Pa]",
     )
@@ -202,10 +218,10 @@ class InitialStressSection(Section):
             raise ValueError("kind = 'table' needs depth and vertical_stress, lists of one length")
         if any(second <= first for first, second in pairwise(self.depth)):
             raise ValueError("depth must increase from value to value")
-        if min(self.vertical_stress) < 0:
-            raise ValueError(
-                f"vertical_stress holds {min(self.vertical_stress):g} Pa; allowed: >= 0 (compression is positive)"
-            )
+        for stress in self.vertical_stress:
+            if not 0 <= stress <= LARGEST_PRESSURE:
+                allowed = f"0 to {LARGEST_PRESSURE:g} Pa (compression is positive)"
+                raise ValueError(f"vertical_stress holds {stress:g} Pa; allowed: {allowed}")
         return self
 
     @model_validator(mode="after")
@@ -220,7 +236,7 @@ class BodySection(Section):
 
     material: str = Field(description="name of a [material.NAME] table")
     shape: AnyShape = Field(description="rectangle, disc, polygon or mesh")
-    density: float = Field(gt=0, description="initial bulk density [kg/m3]")
+    density: float = Field(gt=0, le=LARGEST_DENSITY, description="initial bulk density [kg/m3]")
     points_per_cell: Literal[1, 4, 9, 16, 25, 36] = Field(
         default=4, description="material points per cell, a square number; may be left to `accuracy`"
     )
@@ -229,6 +245,11 @@ class BodySection(Section):
         default=InitialStressSection(),
         description="stress at the start; a law whose stiffness grows with pressure, as Cam Clay, needs one",
     )
+
+    @field_validator("velocity")
+    @classmethod
+    def _velocity_has_a_bound(cls, velocity: Corner) -> Corner:
+        return _at_most(velocity, LARGEST_SPEED, "m/s")
 
 
 # More frames, or rows of the history, are a slip of the unit rather than a wish.
@@ -285,6 +306,11 @@ class Scene(Section):
     body: Annotated[list[BodySection], Field(min_length=1)]
     output: OutputSection = Field(default=OutputSection())
     _source: str = PrivateAttr(default="scene")
+
+    @field_validator("gravity")
+    @classmethod
+    def _gravity_has_a_bound(cls, gravity: Corner) -> Corner:
+        return _at_most(gravity, LARGEST_GRAVITY, "m/s2")
 
     @property
     def source(self) -> str:
