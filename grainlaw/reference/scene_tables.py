@@ -101,7 +101,7 @@ def _type_name(annotation: Any) -> str:
     origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
     if origin is Literal:
         return ", ".join(code(_toml(value)) for value in arguments)
-    names = [_type_name(part) for part in arguments if part is not type(None)]
+    names = ["..." if part is ... else _type_name(part) for part in arguments if part is not type(None)]
     if origin is tuple:
         return f"[{', '.join(names)}]"
     if origin is list:

@@ -9,18 +9,26 @@ from numpy.typing import NDArray
 
 from grainlaw.materials import InputError
 from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
+from grainlaw.mpm_core.scene.shapes import points_along_edge
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-class _Squares(NamedTuple):
-    """The squares that the points of some bodies stand for, in units in which edges and centres are whole numbers."""
+class _Parts(NamedTuple):
+    """The squares, or cubes, that the points of some bodies stand for, in units in which their centres are whole.
 
-    left: Integers
-    bottom: Integers
+    `lower` has the shape (n, axes), the others (n,).
+    """
+
+    lower: Integers
     size: Integers
     body: Integers
+
+    @property
+    def bottom(self) -> Integers:
+        """The lower end along the vertical axis."""
+        return self.lower[:, -1]
 
 
 class _Above(NamedTuple):
@@ -32,7 +40,7 @@ class _Above(NamedTuple):
 
 
 def vertical_stresses(scene: Scene, positions: list[Floats]) -> list[Floats]:
-    """Vertical stress [Pa], tension positive, of the points of each body of `scene` at `positions`, shape (n, 2) [m].
+    """Vertical stress [Pa], tension positive, of the points of each body of `scene` at `positions`, shape (n, axes).
 
     With kind = "geostatic" it is the weight of the unbroken material above in the same column, and the surcharge on
     top of it. A gap narrower than a cell does not break a column: across it, bodies touch through the grid. With kind =
@@ -41,18 +49,18 @@ def vertical_stresses(scene: Scene, positions: list[Floats]) -> list[Floats]:
     Raises InputError for a surcharge on a body that is covered by others and has none of it, and for a table that does
     not span the depths of its body.
     """
-    squares = _squares(scene, positions)
+    parts = _parts(scene, positions)
     stresses = []
     under_others = None
     for number, section in enumerate(scene.body):
-        own = squares.body == number
+        own = parts.body == number
         if section.initial_stress.kind not in ("geostatic", "table"):
             stresses.append(np.zeros(len(positions[number])))
             continue
-        if _stands_alone(squares, own):
+        if _stands_alone(parts, own):
             above = _above_in_one_body(scene, section, positions[number])
         else:
-            under_others = under_others or _above_in_all_bodies(scene, squares)
+            under_others = under_others or _above_in_all_bodies(scene, parts)
             above = _Above(*(values[own] for values in under_others))
         if section.initial_stress.kind == "table":
             stresses.append(-_from_table(number, section.initial_stress, above.depth))
@@ -80,84 +88,93 @@ def _refuse_lost_surcharge(number: int, surcharge: float, carried: Floats) -> No
         )
 
 
-def _stands_alone(squares: _Squares, own: NDArray[np.bool_]) -> bool:
-    """Whether no other body shares a column with the one that has the squares `own`."""
-    first, last = squares.left[own].min(), (squares.left + squares.size)[own].max()
-    shares = (squares.left < last) & (squares.left + squares.size > first) & ~own
-    return not shares.any()
+def _stands_alone(parts: _Parts, own: NDArray[np.bool_]) -> bool:
+    """Whether no other body has parts above or below the box around the parts `own`."""
+    lower, upper = parts.lower[:, :-1], parts.lower[:, :-1] + parts.size[:, None]
+    shares = (lower < upper[own].max(axis=0)) & (upper > lower[own].min(axis=0))
+    return not (shares.all(axis=1) & ~own).any()
 
 
 def _above_in_one_body(scene: Scene, section: BodySection, positions: Floats) -> _Above:
-    spacing = scene.grid.cell_size / section.points_per_cell**0.5
+    spacing = scene.grid.cell_size / points_along_edge(section.points_per_cell, scene.in_space.axes)
     depth = _depth(positions, spacing, scene.grid.cell_size)
-    weight = -scene.gravity[1] * section.density * depth
+    weight = -scene.gravity[-1] * section.density * depth
     return _Above(weight, np.full(len(depth), section.initial_stress.surcharge), depth)
 
 
 def _depth(positions: Floats, spacing: float, cell_size: float) -> Floats:
     """Depth of each lattice point, ordered by columns, below the top of the unbroken material above it [m]."""
-    column = np.round((positions[:, 0] - positions[:, 0].min()) / spacing)
-    gap = np.diff(positions[:, 1]) - spacing
-    breaks = (np.diff(column) != 0) | (gap > (1.0 - 1e-6) * cell_size)
+    across, height = positions[:, :-1], positions[:, -1]
+    column = np.round((across - across.min(axis=0)) / spacing)
+    gap = np.diff(height) - spacing
+    breaks = (np.diff(column, axis=0) != 0).any(axis=1) | (gap > (1.0 - 1e-6) * cell_size)
     run = np.concatenate([[0], np.cumsum(breaks)])
-    top = positions[np.append(np.flatnonzero(breaks), len(positions) - 1), 1]
-    return np.asarray(top[run] + 0.5 * spacing - positions[:, 1])
+    top = height[np.append(np.flatnonzero(breaks), len(positions) - 1)]
+    return np.asarray(top[run] + 0.5 * spacing - height)
 
 
 def _units_per_cell(scene: Scene) -> int:
-    return 2 * math.lcm(*(math.isqrt(section.points_per_cell) for section in scene.body))
+    axes = scene.in_space.axes
+    return 2 * math.lcm(*(points_along_edge(section.points_per_cell, axes) for section in scene.body))
 
 
-def _squares(scene: Scene, positions: list[Floats]) -> _Squares:
+def _parts(scene: Scene, positions: list[Floats]) -> _Parts:
     units = _units_per_cell(scene)
-    parts = []
+    found = []
     for number, section in enumerate(scene.body):
-        size = units // math.isqrt(section.points_per_cell)
+        size = units // points_along_edge(section.points_per_cell, scene.in_space.axes)
         spacing = scene.grid.cell_size * size / units
         indices = np.round((positions[number] - scene.grid.lower) / spacing - 0.5).astype(np.int64)
         same = np.ones(len(indices), np.int64)
-        parts.append(_Squares(size * indices[:, 0], size * indices[:, 1], size * same, number * same))
-    return _Squares(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+        found.append(_Parts(size * indices, size * same, number * same))
+    return _Parts(*(np.concatenate(values) for values in zip(*found, strict=True)))
 
 
-def _above_in_all_bodies(scene: Scene, squares: _Squares) -> _Above:
-    """Means over the columns that the square of each point covers."""
+def _above_in_all_bodies(scene: Scene, parts: _Parts) -> _Above:
+    """Means over the columns that the part of each point covers."""
     units = _units_per_cell(scene)
     unit = scene.grid.cell_size / units
-    specific_weight = np.array([-scene.gravity[1] * section.density * unit for section in scene.body])
+    specific_weight = np.array([-scene.gravity[-1] * section.density * unit for section in scene.body])
     surcharges = np.array([section.initial_stress.surcharge for section in scene.body])
-    weight, surcharge, depth = np.zeros((3, len(squares.left)))
-    upper, centre = squares.bottom + squares.size, squares.bottom + squares.size // 2
-    for width, points in _columns(squares):
-        share = width / squares.size[points]
-        body = squares.body[points]
-        above, top = _down_the_column(squares.bottom[points], squares.size[points], specific_weight[body], units)
+    weight, surcharge, depth = np.zeros((3, len(parts.size)))
+    upper, centre = parts.bottom + parts.size, parts.bottom + parts.size // 2
+    for area, points in _columns(parts):
+        share = area / parts.size[points] ** (scene.in_space.axes - 1)
+        body = parts.body[points]
+        above, top = _down_the_column(parts.bottom[points], parts.size[points], specific_weight[body], units)
         weight[points] += share * above
         surcharge[points] += share * surcharges[body[top]]
         depth[points] += share * (upper[points[top]] - centre[points]) * unit
     return _Above(weight, surcharge, depth)
 
 
-def _columns(squares: _Squares) -> Iterator[tuple[int, Integers]]:
-    """Width of, and points in, each of the columns into which all edges of squares divide the plane."""
-    edges = np.unique(np.concatenate([squares.left, squares.left + squares.size]))
-    first = np.searchsorted(edges, squares.left)
-    covered = np.searchsorted(edges, squares.left + squares.size) - first
-    points = np.repeat(np.arange(len(first)), covered)
-    column = np.arange(len(points)) - np.repeat(np.cumsum(covered) - covered - first, covered)
+def _columns(parts: _Parts) -> Iterator[tuple[int, Integers]]:
+    """Area (width, in the plane) of, and points in, the columns into which all edges of parts divide the ground."""
+    points = np.arange(len(parts.size))
+    column, area = np.zeros((2, len(points)), np.int64)
+    area += 1
+    for axis in range(parts.lower.shape[1] - 1):
+        lower, upper = parts.lower[:, axis], parts.lower[:, axis] + parts.size
+        edges = np.unique(np.concatenate([lower, upper]))
+        first = np.searchsorted(edges, lower)[points]
+        covered = np.searchsorted(edges, upper)[points] - first
+        into = np.repeat(np.arange(len(points)), covered)
+        strip = np.arange(len(into)) - np.repeat(np.cumsum(covered) - covered - first, covered)
+        points, column = points[into], column[into] * len(edges) + strip
+        area = area[into] * (edges[strip + 1] - edges[strip])
     order = np.argsort(column, kind="stable")
-    column, points = column[order], points[order]
+    points, column, area = points[order], column[order], area[order]
     starts = np.flatnonzero(np.diff(column, prepend=-1))
     for start, members in zip(starts, np.split(points, starts[1:]), strict=True):
-        yield int(edges[column[start] + 1] - edges[column[start]]), members
+        yield int(area[start]), members
 
 
 def _down_the_column(
     bottom: Integers, size: Integers, specific_weight: Floats, widest_gap: int
 ) -> tuple[Floats, Integers]:
-    """Weight above the centre of each square [Pa], and the topmost square of its unbroken material.
+    """Weight above the centre of each part [Pa], and the topmost part of its unbroken material.
 
-    `specific_weight` is in Pa for a unit of length. Where squares of bodies with other spacings overlap, the material
+    `specific_weight` is in Pa for a unit of length. Where parts of bodies with other spacings overlap, the material
     is their mean.
     """
     count = len(bottom)

@@ -15,13 +15,14 @@ from grainlaw.mpm_core.kernels.positions import put_density, put_positions
 from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, REMAINDERS, SXX, SYY, SZZ, VX, VY, allocate
 from grainlaw.mpm_core.scene.geostatic import vertical_stresses
 from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
-from grainlaw.mpm_core.scene.shapes import lattice
+from grainlaw.mpm_core.scene.shapes import lattice, points_along_edge
+from grainlaw.mpm_core.space import PLANE_STRAIN, Space
 from grainlaw.mpm_core.stepping.peak_memory import physical_memory
 
 # Bulk density of grains [kg/m3]: expanded perlite and foam beads are about as light.
 LIGHTEST_PACKING = 100.0
-# At least, while a shape is filled: two copies of the coordinates.
-BYTES_PER_POINT = 32
+# At least, while a shape is filled: two copies of a coordinate.
+BYTES_PER_COORDINATE = 16
 # Sizes of the domain along an axis beyond which a shape is refused before its points are counted.
 FARTHEST = 4.0
 # Of stresses that may be stored in single precision.
@@ -33,6 +34,8 @@ def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
 
     Raises InputError for empty, overlapping, misplaced or too dense ones.
     """
+    if scene.in_space is not PLANE_STRAIN:
+        raise InputError(f"space = '{scene.space}' cannot be computed yet; allowed: 'plane_strain'")
     bodies: list[Body] = []
     positions = [_positions(scene, number, section) for number, section in enumerate(scene.body)]
     _refuse_overlap(scene, positions)
@@ -54,12 +57,15 @@ def _positions(scene: Scene, number: int, section: BodySection) -> NDArray[np.fl
         raise InputError(f"body.{number}: the shape holds no point; it is smaller than a cell of the grid")
     outside = ((positions < scene.grid.lower) | (positions > scene.grid.upper)).any(axis=1)
     if outside.any():
-        x, y = positions[outside][0]
         raise InputError(
             f"body.{number}: {outside.sum()} of {len(positions)} points lie outside the domain "
-            f"{list(scene.grid.lower)} to {list(scene.grid.upper)}, the first at ({x:g}, {y:g})"
+            f"{list(scene.grid.lower)} to {list(scene.grid.upper)}, the first at {_place(positions[outside][0])}"
         )
     return positions
+
+
+def _place(point: NDArray[np.float64]) -> str:
+    return f"({', '.join(f'{coordinate:g}' for coordinate in point)})"
 
 
 def _refuse_absurd_size(scene: Scene, number: int, section: BodySection) -> None:
@@ -68,21 +74,26 @@ def _refuse_absurd_size(scene: Scene, number: int, section: BodySection) -> None
     if (upper < scene.grid.lower).any() or (lower > scene.grid.upper).any():
         domain = f"{list(scene.grid.lower)} to {list(scene.grid.upper)}"
         raise InputError(f"body.{number}: the shape lies outside the domain {domain}")
-    spacing = scene.grid.cell_size / section.points_per_cell**0.5
+    axes = scene.in_space.axes
+    spacing = scene.grid.cell_size / points_along_edge(section.points_per_cell, axes)
     with np.errstate(over="ignore"):
-        across, up = (upper - lower) / spacing
-        memory = BYTES_PER_POINT * across * up
+        points = (upper - lower) / spacing
+        memory = BYTES_PER_COORDINATE * axes * np.prod(points)
     if not memory < physical_memory():
         raise InputError(
-            f"body.{number}: the shape is {across:.3g} x {up:.3g} points of {spacing:g} m large, more than fit into "
+            f"body.{number}: the shape is {_size(points, 3)} points of {spacing:g} m large, more than fit into "
             "memory; lengths are in metres"
         )
     domain = np.array(scene.grid.upper) - np.array(scene.grid.lower)
     if ((upper - lower) > FARTHEST * domain).any():
         raise InputError(
-            f"body.{number}: the shape is {across * spacing:.3g} x {up * spacing:.3g} m large, the domain "
-            f"{domain[0]:g} x {domain[1]:g} m; lengths are in metres"
+            f"body.{number}: the shape is {_size(points * spacing, 3)} m large, the domain {_size(domain, 6)} m; "
+            "lengths are in metres"
         )
+
+
+def _size(lengths: NDArray[np.float64], digits: int) -> str:
+    return " x ".join(f"{length:.{digits}g}" for length in lengths)
 
 
 def _refuse_overlap(scene: Scene, positions: list[NDArray[np.float64]]) -> None:
@@ -92,8 +103,8 @@ def _refuse_overlap(scene: Scene, positions: list[NDArray[np.float64]]) -> None:
             in_second = positions[first][section.shape.contains(positions[first])]
             in_first = positions[second][scene.body[first].shape.contains(positions[second])]
             if len(in_second) or len(in_first):
-                x, y = (*in_second, *in_first)[0]
-                raise InputError(f"body.{first} and body.{second} overlap, for instance at ({x:g}, {y:g})")
+                place = _place((*in_second, *in_first)[0])
+                raise InputError(f"body.{first} and body.{second} overlap, for instance at {place}")
 
 
 def _build(
@@ -115,26 +126,50 @@ def _build(
     put_positions(points, positions.T)
     points[VX], points[VY] = section.velocity
     put_density(points, section.density)
-    spacing = scene.grid.cell_size / section.points_per_cell**0.5
-    points[SXX], points[SYY], points[SZZ] = _initial_stress(section.initial_stress, vertical)
+    points[SXX], points[SYY], points[SZZ] = normal_stresses(scene.in_space, section.initial_stress, vertical)
     _warn_without_stiffness(law, parameters, points, f"{scene.source}: {name}")
     with numbers_of(law.name):
         _initialise_state(law, parameters, points)
-    return Body(name, law, parameters, storage, len(positions), section.density * spacing**2, first_id)
+    mass = section.density * volume_per_point(scene, section)
+    return Body(name, law, parameters, storage, len(positions), mass, first_id)
 
 
-def _initial_stress(
-    section: InitialStressSection, vertical: NDArray[np.float64]
+def volume_per_point(scene: Scene, section: BodySection) -> float:
+    """The part of a cell that a point stands for [m3], in plane strain and axisymmetry its area [m2]."""
+    axes = scene.in_space.axes
+    spacing = scene.grid.cell_size / points_along_edge(section.points_per_cell, axes)
+    return float(spacing**axes)
+
+
+def point_masses(scene: Scene, section: BodySection, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The masses of a body's points, shape (n,), at `positions`, shape (n, axes) [m].
+
+    In 3D those of their cubes [kg], in plane strain per width [kg/m]; in axisymmetry per radian [kg/rad], the density
+    times the area times the radius of its centre, which is exact for a square.
+    """
+    mass = section.density * volume_per_point(scene, section)
+    return mass * positions[:, 0] if scene.in_space.hoop else np.full(len(positions), mass)
+
+
+def normal_stresses(
+    space: Space, section: InitialStressSection, vertical: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Normal stresses [Pa] along x, y and z; `vertical` is the one along y over depth, shape (n,)."""
+    """Normal stresses [Pa] along x, y and z, in axisymmetry z around the axis; shear stresses are zero.
+
+    `vertical` is the one along the vertical axis over depth, shape (n,).
+    """
     if section.kind == "uniform":
         pressure = np.full(len(vertical), section.pressure)
         return -pressure, -pressure, -pressure
-    if section.kind in ("geostatic", "table"):
-        horizontal = section.horizontal_ratio * vertical
-        return horizontal, vertical, section.out_of_plane_ratio * (horizontal + vertical)
-    nothing = np.zeros(len(vertical))
-    return nothing, nothing, nothing
+    if section.kind not in ("geostatic", "table"):
+        nothing = np.zeros(len(vertical))
+        return nothing, nothing, nothing
+    horizontal = section.horizontal_ratio * vertical
+    if space.axes == 3:
+        return horizontal, horizontal, vertical
+    if section.out_of_plane_ratio is None:
+        return horizontal, vertical, horizontal
+    return horizontal, vertical, section.out_of_plane_ratio * (horizontal + vertical)
 
 
 def _check_density(law: Law, parameters: Any, section: BodySection, name: str, source: str) -> None:

@@ -6,54 +6,51 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tomli_w
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, field_validator, model_validator
+from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
 
 from grainlaw.materials import InputError, get_material
 from grainlaw.materials.errors import nearest_name
 from grainlaw.materials.law import Law
+from grainlaw.mpm_core.scene.boundary import BoundarySection
 from grainlaw.mpm_core.scene.errors import described
 from grainlaw.mpm_core.scene.file import read_content
 from grainlaw.mpm_core.scene.presets import with_settings_for_accuracy
-from grainlaw.mpm_core.scene.shapes import AnyShape, Corner
+from grainlaw.mpm_core.scene.section import (
+    LARGEST_DENSITY,
+    LARGEST_GRAVITY,
+    LARGEST_PRESSURE,
+    LARGEST_RATIO,
+    LARGEST_SPEED,
+    Section,
+    Vector,
+    at_most,
+)
+from grainlaw.mpm_core.scene.shapes import SHAPES, AnyShape
+from grainlaw.mpm_core.scene.space_rules import fitted_to_space
+from grainlaw.mpm_core.space import SPACES, Space
 
-# Beyond these a number is a slip of the unit, or overflows on its way through a run.
-LARGEST_SPEED, LARGEST_GRAVITY, LARGEST_DENSITY = 1e6, 1e6, 1e6  # m/s, m/s2, kg/m3
-LARGEST_PRESSURE, LARGEST_RATIO = 1e12, 1e3  # Pa, 1
 # The widest stencil: over fewer cells it would reach the same node twice.
 FEWEST_PERIODIC_CELLS = 4
-
-
-class Section(BaseModel):
-    """A table of a scene file; unknown keys are refused."""
-
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
-
-
-def _at_most(vector: Corner, largest: float, unit: str) -> Corner:
-    """The vector. Raises ValueError if one of its components is larger, or negative and larger."""
-    for component in vector:
-        if abs(component) > largest:
-            raise ValueError(f"{component:g} {unit} is out of bounds; allowed: {-largest:g} to {largest:g} {unit}")
-    return vector
 
 
 class GridSection(Section):
     """The background grid."""
 
-    cell_size: float = Field(gt=0, description="edge of a square cell [m]; may be left to `accuracy`")
-    lower: Corner = Field(default=(0.0, 0.0), description="lower left corner of the domain [m]")
-    upper: Corner = Field(description="upper right corner of the domain [m]; a whole number of cells from `lower`")
+    cell_size: float = Field(gt=0, description="edge of a cell, a square or a cube [m]; may be left to `accuracy`")
+    lower: Vector = Field(
+        default=(0.0, 0.0), description="lower corner of the domain, in 3D of three components [m]; default: the origin"
+    )
+    upper: Vector = Field(description="upper corner of the domain [m]; a whole number of cells from `lower`")
 
     @property
-    def cells(self) -> tuple[int, int]:
-        """Number of cells along x and y."""
-        counts = [round((self.upper[axis] - self.lower[axis]) / self.cell_size) for axis in (0, 1)]
-        return counts[0], counts[1]
+    def cells(self) -> Any:
+        """Number of cells along each axis."""
+        return tuple(round((high - low) / self.cell_size) for low, high in zip(self.lower, self.upper, strict=True))
 
     @model_validator(mode="after")
     def _whole_cells(self) -> "GridSection":
-        for axis, name in enumerate("xy"):
-            length = self.upper[axis] - self.lower[axis]
+        for name, low, high in zip("xyz", self.lower, self.upper, strict=False):
+            length = high - low
             if not math.isfinite(length / self.cell_size):
                 raise ValueError(f"the domain is {length:g} m along {name}, too many cells of {self.cell_size:g} m")
             whole = round(length / self.cell_size) * self.cell_size
@@ -62,57 +59,6 @@ class GridSection(Section):
                     f"the domain is {length:g} m along {name}, not a whole number of cells of {self.cell_size:g} m; "
                     f"nearest: {max(whole, self.cell_size):g} m"
                 )
-        return self
-
-
-class WallSection(Section):
-    """A wall, or a side joined to its opposite."""
-
-    kind: Literal["free_slip", "no_slip", "friction", "periodic"] = Field(
-        description="free_slip and no_slip hold the material at the wall; friction lets it leave and slide"
-    )
-    coefficient: float = Field(default=0.0, ge=0, description="Coulomb friction coefficient of a friction wall [1]")
-    velocity: float = Field(
-        default=0.0,
-        ge=-LARGEST_SPEED,
-        le=LARGEST_SPEED,
-        description="speed at which a friction or no_slip wall slides along itself, towards +x or +y [m/s]",
-    )
-
-    @model_validator(mode="after")
-    def _coefficient_belongs_to_friction(self) -> "WallSection":
-        if self.kind == "friction" and "coefficient" not in self.model_fields_set:
-            raise ValueError("kind = 'friction' needs a coefficient")
-        if self.kind != "friction" and self.coefficient > 0:
-            raise ValueError("a coefficient belongs to kind = 'friction', and to no other")
-        return self
-
-    @model_validator(mode="after")
-    def _velocity_belongs_to_a_wall_that_grips(self) -> "WallSection":
-        if self.velocity and self.kind not in ("friction", "no_slip"):
-            raise ValueError("a velocity belongs to kind = 'friction' or 'no_slip', which can pass it on")
-        return self
-
-
-class BoundarySection(Section):
-    """What happens at the four sides of the domain."""
-
-    left: WallSection = Field(default=WallSection(kind="free_slip"), description="side x = lower")
-    right: WallSection = Field(default=WallSection(kind="free_slip"), description="side x = upper")
-    bottom: WallSection = Field(default=WallSection(kind="free_slip"), description="side y = lower")
-    top: WallSection = Field(default=WallSection(kind="free_slip"), description="side y = upper")
-
-    @field_validator("*", mode="before")
-    @classmethod
-    def _short_form(cls, value: Any) -> Any:
-        return {"kind": value} if isinstance(value, str) else value
-
-    @model_validator(mode="after")
-    def _periodic_in_pairs(self) -> "BoundarySection":
-        for first, second in (("left", "right"), ("bottom", "top")):
-            kinds = {getattr(self, first).kind, getattr(self, second).kind}
-            if "periodic" in kinds and len(kinds) > 1:
-                raise ValueError(f"periodic sides come in pairs: set both {first} and {second}")
         return self
 
 
@@ -183,13 +129,18 @@ class InitialStressSection(Section):
     )
     pressure: float = Field(default=0.0, ge=0, le=LARGEST_PRESSURE, description="pressure of kind = 'uniform' [Pa]")
     horizontal_ratio: float = Field(
-        default=1.0, ge=0, le=LARGEST_RATIO, description="sigma_xx/sigma_yy, unless the stress is uniform [1]"
+        default=1.0,
+        ge=0,
+        le=LARGEST_RATIO,
+        description="horizontal over vertical stress, unless the stress is uniform: sigma_xx/sigma_yy in plane strain, "
+        "in axisymmetry also around the axis, in 3D sigma_xx and sigma_yy over sigma_zz [1]",
     )
-    out_of_plane_ratio: float = Field(
+    out_of_plane_ratio: float | None = Field(
         default=0.5,
         ge=0,
         le=LARGEST_RATIO,
-        description="sigma_zz/(sigma_xx + sigma_yy), unless the stress is uniform; 0.5 with ratio 1: isotropic [1]",
+        description="sigma_zz/(sigma_xx + sigma_yy) in plane strain, and in no other space, unless the stress is "
+        "uniform; 0.5 with ratio 1: isotropic [1]",
     )
     surcharge: float = Field(
         default=0.0,
@@ -235,12 +186,14 @@ class BodySection(Section):
     """A body: shape, material, initial state."""
 
     material: str = Field(description="name of a [material.NAME] table")
-    shape: AnyShape = Field(description="rectangle, disc, polygon or mesh")
+    shape: AnyShape = Field(description="rectangle, disc, polygon or mesh; in 3D box, cylinder, cone or sphere")
     density: float = Field(gt=0, le=LARGEST_DENSITY, description="initial bulk density [kg/m3]")
-    points_per_cell: Literal[1, 4, 9, 16, 25, 36] = Field(
-        default=4, description="material points per cell, a square number; may be left to `accuracy`"
+    points_per_cell: Literal[1, 4, 8, 9, 16, 25, 27, 36, 64] = Field(
+        default=4,
+        description="material points per cell, a square number; may be left to `accuracy`; in 3D a cube number, "
+        "default: 8",
     )
-    velocity: Corner = Field(default=(0.0, 0.0), description="initial velocity [m/s]")
+    velocity: Vector = Field(default=(0.0, 0.0), description="initial velocity [m/s]")
     initial_stress: InitialStressSection = Field(
         default=InitialStressSection(),
         description="stress at the start; a law whose stiffness grows with pressure, as Cam Clay, needs one",
@@ -248,8 +201,8 @@ class BodySection(Section):
 
     @field_validator("velocity")
     @classmethod
-    def _velocity_has_a_bound(cls, velocity: Corner) -> Corner:
-        return _at_most(velocity, LARGEST_SPEED, "m/s")
+    def _velocity_has_a_bound(cls, velocity: Vector) -> Vector:
+        return at_most(velocity, LARGEST_SPEED, "m/s")
 
 
 # More frames, or rows of the history, are a slip of the unit rather than a wish.
@@ -283,6 +236,11 @@ class Scene(Section):
     """A complete scene."""
 
     title: str = Field(default="", description="one line for reports")
+    space: Literal["plane_strain", "axisymmetric", "3d"] = Field(
+        default="plane_strain",
+        description="plane_strain: x right, y up, one metre of width; axisymmetric: x is the radius, y up, a radian "
+        "around the axis x = 0; 3d: x right, y back, z up",
+    )
     accuracy: Literal["10%", "3%", "1%"] | None = Field(
         default=None,
         description="sets grid.cell_size, time.safety, body.points_per_cell and precision "
@@ -294,7 +252,9 @@ class Scene(Section):
         default="double",
         description="of nodes and points, but for places and densities, and of the arithmetic of laws that hold in it",
     )
-    gravity: Corner = Field(default=(0.0, -9.81), description="gravity vector [m/s2]")
+    gravity: Vector = Field(
+        default=(0.0, -9.81), description="gravity vector [m/s2]; in 3D, where z is up, default: [0, 0, -9.81]"
+    )
     grid: GridSection
     time: TimeSection
     boundary: BoundarySection = Field(default=BoundarySection())
@@ -309,13 +269,31 @@ class Scene(Section):
 
     @field_validator("gravity")
     @classmethod
-    def _gravity_has_a_bound(cls, gravity: Corner) -> Corner:
-        return _at_most(gravity, LARGEST_GRAVITY, "m/s2")
+    def _gravity_has_a_bound(cls, gravity: Vector) -> Vector:
+        return at_most(gravity, LARGEST_GRAVITY, "m/s2")
 
     @property
     def source(self) -> str:
         """The file that the scene was read from, for messages."""
         return self._source
+
+    @property
+    def in_space(self) -> Space:
+        """The space of the scene."""
+        return SPACES[self.space]
+
+    @property
+    def left_is_axis(self) -> bool:
+        """Whether the left side is the axis of an axisymmetric scene, which acts as a free-slip wall."""
+        return self.in_space.hoop and self.grid.lower[0] == 0.0
+
+    def wall_velocity(self, side: str) -> tuple[float, ...]:
+        """The velocity of a side along each axis [m/s]."""
+        velocity = self.boundary.of(side).velocity
+        if isinstance(velocity, tuple):
+            return velocity
+        across = next(axis for axis, pair in enumerate(self.in_space.sides) if side in pair)
+        return tuple(0.0 if axis == across else velocity for axis in range(self.in_space.axes))
 
     @property
     def blend_time(self) -> float:
@@ -326,13 +304,39 @@ class Scene(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _settings_for_accuracy(cls, content: Any) -> Any:
-        return with_settings_for_accuracy(content)
+    def _defaults_of_space_and_accuracy(cls, content: Any) -> Any:
+        return with_settings_for_accuracy(fitted_to_space(content))
+
+    @model_validator(mode="after")
+    def _fits_its_space(self) -> "Scene":
+        if self.in_space.hoop:
+            self._refuse_without_axis()
+        self.boundary.refuse_for(self.in_space, self.left_is_axis)
+        for number, body in enumerate(self.body):
+            if len(body.shape.bounds()[0]) != self.in_space.axes:
+                known = ", ".join(SHAPES[self.in_space.axes])
+                raise ValueError(f"body.{number}.shape: not a shape of space = '{self.space}'; allowed: {known}")
+            if (self.space == "plane_strain") == (body.initial_stress.out_of_plane_ratio is None):
+                raise ValueError(
+                    f"body.{number}.initial_stress.out_of_plane_ratio belongs to space = 'plane_strain'; in "
+                    f"space = '{self.space}' horizontal_ratio sets both horizontal stresses"
+                )
+        return self
+
+    def _refuse_without_axis(self) -> None:
+        if self.grid.lower[0] < 0.0:
+            raise ValueError(
+                f"grid.lower = {list(self.grid.lower)}: x is the radius in space = 'axisymmetric'; allowed: x >= 0"
+            )
+        if self.gravity[0] != 0.0:
+            raise ValueError(
+                f"gravity = {list(self.gravity)}: in space = 'axisymmetric' gravity acts along the axis; allowed: x = 0"
+            )
 
     @model_validator(mode="after")
     def _periodic_axes_are_wide_enough(self) -> "Scene":
-        for cells, side in zip(self.grid.cells, ("left", "bottom"), strict=True):
-            if getattr(self.boundary, side).kind == "periodic" and cells < FEWEST_PERIODIC_CELLS:
+        for cells, (side, _) in zip(self.grid.cells, self.in_space.sides, strict=True):
+            if self.boundary.kind_of(side) == "periodic" and cells < FEWEST_PERIODIC_CELLS:
                 raise ValueError(
                     f"boundary.{side} is periodic over {cells} cells of the grid; "
                     f"allowed: {FEWEST_PERIODIC_CELLS} or more"

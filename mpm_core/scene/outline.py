@@ -6,17 +6,17 @@ from numpy.typing import NDArray
 Points = NDArray[np.float64]
 
 # A point on an edge belongs to the region on its right, or above it. The shift is far above round-off of coordinates
-# and far below a cell, and its direction is that of no edge in use (37 degrees).
-SHIFT = 2.0**-36 * np.array([1.0, 0.7548776662466927])
+# and far below a cell, and its direction is that of no edge in use (in the plane 37 degrees).
+SHIFT = 2.0**-36 * np.array([1.0, 0.7548776662466927, 0.5698402909980532])
 
 
 def off_edges(points: Points) -> Points:
-    """The points, shape (n, 2) [m], shifted by far less than a cell: none lies on an edge any more.
+    """The points, shape (n, axes) [m], shifted by far less than a cell: none lies on an edge or a face any more.
 
     The shift depends on the point alone, so that every region decides alike about a point on a common edge.
     """
     scale = np.abs(points).max(axis=1, initial=1.0)
-    return points + scale[:, None] * SHIFT
+    return points + scale[:, None] * SHIFT[: points.shape[1]]
 
 
 def closed_edges(corners: Points) -> Points:

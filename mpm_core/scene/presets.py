@@ -13,6 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from grainlaw.materials import InputError, Resolution, get_material
 from grainlaw.mpm_core.scene.shapes import AnyShape
+from grainlaw.mpm_core.space import PLANE_STRAIN
 
 # How much finer than wanted cells may become to divide the domain.
 FINEST_SHARE = 0.5
@@ -26,12 +27,17 @@ ACCURACIES = ("10%", "3%", "1%")
 def with_settings_for_accuracy(content: Any) -> Any:
     """The tables of a scene, with what it leaves open of the settings filled in where `accuracy` asks for it.
 
-    Raises ValueError for a law or its parameters that are wrong, for an accuracy that was not reached with a law of the
-    scene or with bodies as slender as these, where its cells would be finer than the grains, and where no cell size
-    divides the domain. What is not well-formed is left to the validation of the scene.
+    Raises ValueError in another space than plane strain, for a law or its parameters that are wrong, for an accuracy
+    that was not reached with a law of the scene or with bodies as slender as these, where its cells would be finer than
+    the grains, and where no cell size divides the domain. What is not well-formed is left to the validation of the
+    scene.
     """
     if not isinstance(content, Mapping) or content.get("accuracy") not in ACCURACIES:
         return content
+    if content.get("space", PLANE_STRAIN.name) != PLANE_STRAIN.name:
+        raise ValueError(
+            f"accuracy = '{content['accuracy']}' was measured in plane strain, in no other space; {INSTEAD}"
+        )
     grid, time = content.get("grid"), content.get("time")
     boxes, materials = _boxes(content.get("body")), _materials(content)
     if not isinstance(grid, Mapping) or not isinstance(time, Mapping) or not boxes or not materials:

@@ -18,7 +18,7 @@ LARGEST_SHARE = 1e-2
 
 
 def refuse_coarse_stress(
-    bodies: Sequence[Body], signals: Sequence[tuple[float, float]], gravity: tuple[float, float]
+    bodies: Sequence[Body], signals: Sequence[tuple[float, float]], gravity: tuple[float, ...]
 ) -> None:
     """Raises InputError for a body in single precision whose stress [Pa] would be kept too coarsely.
 
@@ -40,4 +40,5 @@ def refuse_coarse_stress(
 def typical_stress(body: Body, gravity: float) -> float:
     """The larger of initial stress and weight of the body [Pa]; zero if it has neither."""
     height = float(np.ptp(body.positions, axis=1).max())
-    return max(float(np.abs(body.stress[:2]).max()), body.initial_density * gravity * height)
+    in_plane = body.stress[: len(body.positions)]
+    return max(float(np.abs(in_plane).max()), body.initial_density * gravity * height)

@@ -1,31 +1,19 @@
-"""Shapes of bodies, as a scene declares them, and the regular lattice of points that fills one."""
+"""Shapes of bodies in the plane, all shapes by kind, and the regular lattice of points that fills one."""
 
 from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from grainlaw.mpm_core.scene.mesh_file import read_cells
 from grainlaw.mpm_core.scene.outline import Points, areas, closed_edges, enclosed, enclosed_area, off_edges, outer_edges
+from grainlaw.mpm_core.scene.shape import Shape
+from grainlaw.mpm_core.scene.solids import Box, Cone, Cylinder, Sphere
 
 SAME_AREA = 1e-6  # relative; interface nodes of two parts may differ by the digits of the file
 Corner = Annotated[tuple[float, float], Field(strict=False)]
-
-
-class Shape(BaseModel):
-    """A region of the plane."""
-
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
-
-    def bounds(self) -> tuple[Corner, Corner]:
-        """Lower and upper corner of the bounding box [m]."""
-        raise NotImplementedError
-
-    def contains(self, points: Points) -> NDArray[np.bool_]:
-        """Which of the points, shape (n, 2) [m], lie inside."""
-        raise NotImplementedError
 
 
 class Rectangle(Shape):
@@ -129,21 +117,31 @@ class MeshRegion(Shape):
         return enclosed(points, self._outline)
 
 
-AnyShape = Annotated[Rectangle | Disc | Polygon | MeshRegion, Field(discriminator="kind")]
+AnyShape = Annotated[
+    Rectangle | Disc | Polygon | MeshRegion | Box | Cylinder | Cone | Sphere, Field(discriminator="kind")
+]
+# The shapes of the spaces with two axes and with three, by kind.
+SHAPES: dict[int, dict[str, type[Shape]]] = {
+    2: {"rectangle": Rectangle, "disc": Disc, "polygon": Polygon, "mesh": MeshRegion},
+    3: {"box": Box, "cylinder": Cylinder, "cone": Cone, "sphere": Sphere},
+}
 
 
-def lattice(shape: Shape, origin: Corner, cell_size: float, points_per_cell: int) -> Points:
-    """Points at the centres of the sub-squares of the grid's cells whose centre lies in the shape, shape (n, 2) [m].
+def points_along_edge(points_per_cell: int, axes: int) -> int:
+    """How many of the points of a cell stand in a row along one of its edges."""
+    return round(points_per_cell ** (1.0 / axes))
 
-    Each point stands for the area cell_size^2 / points_per_cell.
+
+def lattice(shape: Shape, origin: tuple[float, ...], cell_size: float, points_per_cell: int) -> Points:
+    """Points at the centres of the parts of the grid's cells whose centre lies in the shape, shape (n, axes) [m].
+
+    Cells are divided into equal squares, or cubes. Points are ordered by columns along the last axis, upwards.
     """
-    spacing = cell_size / round(points_per_cell**0.5)
-    lower, upper = shape.bounds()
+    spacing = cell_size / points_along_edge(points_per_cell, len(origin))
     axes = []
-    for axis in (0, 1):
-        first = int(np.floor((lower[axis] - origin[axis]) / spacing + 1e-6))
-        last = int(np.ceil((upper[axis] - origin[axis]) / spacing - 1e-6))
-        axes.append(origin[axis] + (np.arange(first, last) + 0.5) * spacing)
-    x, y = np.meshgrid(*axes, indexing="ij")
-    candidates = np.column_stack([x.ravel(), y.ravel()])
+    for start, lower, upper in zip(origin, *shape.bounds(), strict=True):
+        first = int(np.floor((lower - start) / spacing + 1e-6))
+        last = int(np.ceil((upper - start) / spacing - 1e-6))
+        axes.append(start + (np.arange(first, last) + 0.5) * spacing)
+    candidates = np.column_stack([places.ravel() for places in np.meshgrid(*axes, indexing="ij")])
     return candidates[shape.contains(candidates)]
