@@ -19,12 +19,23 @@ from grainlaw.materials.element.specimen import prepared
 from grainlaw.materials.registry import get_material
 from grainlaw.mpm_core import Scene, simulation
 from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.output.checkpoint import (
+    CHECKPOINT_NAME,
+    Clock,
+    how_to_go_on,
+    read_checkpoint,
+    refuse_other_laws,
+    write_checkpoint,
+)
 from grainlaw.mpm_core.output.frame import Field, Frame
 from grainlaw.mpm_core.output.frame_series import FrameSeries
+from grainlaw.mpm_core.output.hdf5_file import USER_BLOCK
 from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, HistoryWriter
+from grainlaw.mpm_core.output.prepare import cut_vtkhdf
 from grainlaw.mpm_core.output.quantities import write_quantities
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.output.summary import FinalState, RunSummary, write_summary
+from grainlaw.mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame
 from grainlaw.mpm_core.stepping import run
 from grainlaw.validation.grains.observation import write_observation
 from grainlaw.validation.grains.observe import observe_folder
@@ -123,12 +134,12 @@ NODES = np.array([[0.3, 0.2], [0.5, 0.2], [0.7, 0.2], [0.3, 0.6], [0.5, 0.6], [0
 QUADS = np.array([[0, 1, 4, 3], [1, 2, 5, 4]])
 
 
-def _mesh(name: str, **options: Any) -> Callable[[Path], Path]:
+def _mesh(name: str, spoils: str = "", **options: Any) -> Callable[[Path], Path]:
     def write(folder: Path) -> Path:
         path = folder / name
         mesh = meshio.Mesh(np.column_stack([NODES, np.zeros(6)]), [("quad", QUADS)])
         mesh.write(path, **options)
-        return path
+        return folder / (spoils or name)
 
     return write
 
@@ -136,6 +147,7 @@ def _mesh(name: str, **options: Any) -> Callable[[Path], Path]:
 def read_mesh(path: Path) -> object:
     """As the shape of a body."""
     scene = path.parent / "scene.toml"
+    path = path.with_suffix(".xdmf") if path.suffix == ".h5" else path
     scene.write_text(tomli_w.dumps(changed(BLOCK, {"body.0.shape": {"kind": "mesh", "file": path.name}})))
     return set_up(scene)
 
@@ -158,10 +170,9 @@ def _run(spoils: str) -> Callable[[Path], Path]:
         _scene(BLOCK)(folder)
         frames, history = FrameSeries(folder), HistoryWriter(folder)
         for step in range(2):
-            fields = (Field("pressure", "Pa", "mean pressure", np.arange(6.0)),)
-            frames.write(Frame(0.1 * step, step, np.column_stack([NODES, np.zeros(6)]), fields))
+            frames.write(_frame(step))
             history.append({column.name: step for column in HISTORY_COLUMNS})
-        write_quantities(folder, fields)
+        write_quantities(folder, _frame(0).fields)
         write_summary(folder, SUMMARY)
         return folder / spoils
 
@@ -173,6 +184,47 @@ def read_run(path: Path) -> object:
     run_folder = RunFolder(path.parent)
     parts = run_folder.scene, run_folder.summary, run_folder.history["t"], run_folder.frame_times
     return [*parts, *(run_folder.load_frame(number).field("pressure") for number in range(len(run_folder.frame_files)))]
+
+
+def _simulation() -> simulation.Simulation:
+    """A block of a few points, whose kernels are not compiled."""
+    with mock.patch.object(Body, "choose_kernels"), mock.patch.object(simulation, "elastic_energy", return_value=0.0):
+        return simulation.Simulation(Scene.from_dict(BLOCK), 1)
+
+
+def _checkpoint(*, sealed: bool) -> Callable[[Path], Path]:
+    def write(folder: Path) -> Path:
+        write_checkpoint(folder, _simulation(), Clock())
+        path = folder / CHECKPOINT_NAME
+        if not sealed:
+            path.write_bytes(path.read_bytes()[USER_BLOCK:])
+        return path
+
+    return write
+
+
+def read_state(path: Path) -> object:
+    """What `--resume` asks of a checkpoint, and what it reads."""
+    built = _simulation()
+    refuse_other_laws(path.parent, [body.law for body in built.bodies])
+    return how_to_go_on(path.parent), read_checkpoint(path.parent, built)
+
+
+def _frame(step: int) -> Frame:
+    fields = (Field("pressure", "Pa", "mean pressure", np.arange(6.0)),)
+    return Frame(0.1 * step, step, np.column_stack([NODES, np.zeros(6)]), fields)
+
+
+def _vtkhdf(folder: Path) -> Path:
+    for step in range(3):
+        append_frame(folder / VTKHDF_NAME, _frame(step))
+    return folder / VTKHDF_NAME
+
+
+def resume_vtkhdf(path: Path) -> None:
+    """Cut the frames off and go on, as `--resume` does without VTU frames."""
+    cut_vtkhdf(path, 0.1)
+    append_frame(path, _frame(2))
 
 
 MANY = changed(
@@ -219,6 +271,9 @@ def subjects() -> dict[str, Subject]:
         "msh 4.1": _mesh("body.msh", file_format="gmsh", binary=False),
         "vtk": _mesh("body.vtk", binary=False),
         "vtu": _mesh("body.vtu", binary=False),
+        "med": _mesh("body.med"),
+        "xdmf": _mesh("body.xdmf"),
+        "xdmf data": _mesh("body.xdmf", spoils="body.h5"),
     }
     clay = get_material("modified_cam_clay")
     return {
@@ -233,5 +288,7 @@ def subjects() -> dict[str, Subject]:
         "dump": Subject(dumps, lambda path: observe_folder(path.parent)),
         "observation": Subject({"hdf5": _observation}, load_reference),
         "mesh": Subject(meshes, read_mesh),
+        "checkpoint": Subject({"sealed": _checkpoint(sealed=True), "older": _checkpoint(sealed=False)}, read_state),
+        "vtkhdf": Subject({"vtkhdf": _vtkhdf}, resume_vtkhdf),
         "run": Subject({name: _run(name) for name in RUN_FILES}, read_run),
     }

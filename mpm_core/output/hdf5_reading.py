@@ -53,8 +53,8 @@ def refuse_endless(path: Path) -> None:
     _walker.go_through(path, LONGEST_WALK + LONGEST_WALK_PER_BYTE * size)
 
 
-def numbers_of(dataset: h5py.Dataset) -> NDArray[Any]:
-    """All numbers of a dataset.
+def numbers_of(dataset: h5py.Dataset, rows: slice | tuple[()] = ()) -> NDArray[Any]:
+    """The numbers of a dataset, or some rows of them.
 
     Raises TypeError for anything else, and ValueError for a damaged one that claims more of them than its file can
     hold.
@@ -64,7 +64,7 @@ def numbers_of(dataset: h5py.Dataset) -> NDArray[Any]:
     elsewhere = dataset.is_virtual or dataset.external
     if not elsewhere and dataset.nbytes > MOST_BYTES_PER_BYTE * dataset.file.id.get_filesize():
         raise ValueError(f"{dataset.name} claims the shape {dataset.shape}, more than the file can hold")
-    return np.asarray(dataset[()])
+    return np.asarray(dataset[rows])
 
 
 class _Walker:

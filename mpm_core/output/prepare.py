@@ -75,7 +75,7 @@ def _remove(folder: Path, patterns: tuple[str, ...]) -> None:
 
 
 def _rewind_vtkhdf(folder: Path, simulation: Simulation) -> None:
-    """Write run.vtkhdf anew from the VTU frames, or without them cut it: a killed run may have left it damaged."""
+    """Write run.vtkhdf anew from the VTU frames, or else from itself: a killed run may have left it damaged."""
     path = folder / VTKHDF_NAME
     if simulation.scene.output.vtu:
         path.unlink(missing_ok=True)
@@ -83,8 +83,13 @@ def _rewind_vtkhdf(folder: Path, simulation: Simulation) -> None:
         for index in range(len(frames.frame_files)):
             append_frame(path, frames.load_frame(index))
         return
+    cut_vtkhdf(path, simulation.time)
+
+
+def cut_vtkhdf(path: Path, time: float) -> None:
+    """Drop the frames after `time` [s]. Raises InputError for a damaged file, and OSError for one that is not open."""
     try:
-        drop_after(path, simulation.time)
+        drop_after(path, time)
     except (*UNREADABLE, InputError) as error:
         if isinstance(error, OSError) and error.errno:
             raise

@@ -7,20 +7,22 @@ begins. The vertices are the same at all steps and are stored once.
 A frame is appended in place, since writing a copy for each would cost the square of the number of frames. One chunk
 per step and array means that the data of earlier steps is never touched, and the new index is put into the file last:
 a run that is killed while it appends, or finds the disk full, leaves them readable. Only the moment in which the index
-is written is not protected; a resumed run therefore writes the file anew from the VTU frames, which also drops the
-steps after the checkpoint.
+is written is not protected; a resumed run therefore writes the file anew, from the VTU frames or else from itself,
+which also drops the steps after the checkpoint.
 """
 
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from grainlaw.materials import atomic
-from grainlaw.mpm_core.output.frame import Frame
+from grainlaw.mpm_core.output.frame import Field, Frame
 from grainlaw.mpm_core.output.hdf5_file import changed_hdf5, new_hdf5
-from grainlaw.mpm_core.output.hdf5_reading import numbers_of, refuse_endless
+from grainlaw.mpm_core.output.hdf5_reading import existing_hdf5, numbers_of
 
 VTKHDF_NAME = "run.vtkhdf"
 _CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
@@ -43,28 +45,41 @@ def append_frame(path: Path, frame: Frame) -> None:
 
 
 def drop_after(path: Path, time: float) -> None:
-    """Cut off the frames later than `time` [s], that of the checkpoint from which the run resumes.
+    """Write the file anew without the frames later than `time` [s], that of the checkpoint from which the run resumes.
 
-    Raises InputError, or what h5py raises, for a damaged file.
+    Raises InputError, or what h5py raises, for a damaged file, which is left as it was.
     """
     if not path.exists():
         return
-    refuse_endless(path)
-    with changed_hdf5(path) as file:
-        root = file["VTKHDF"]
-        steps = root["Steps"]
-        kept = int(np.count_nonzero(numbers_of(steps["Values"])[: int(steps.attrs["NSteps"])] <= time))
-        points = root["Points"].chunks[0]
-        steps.attrs["NSteps"] = kept
-        by_point = [root["Points"], *root["PointData"].values()]
-        by_step = [root["NumberOfPoints"], *(found for found in steps.values() if isinstance(found, h5py.Dataset))]
-        by_step += steps["PointDataOffsets"].values()
-        by_step += [root[kind][name] for kind in _CELL_KINDS for name in ("NumberOfCells", "NumberOfConnectivityIds")]
-        for datasets, rows in ((by_step, kept), (by_point, kept * points)):
-            for dataset in datasets:
-                if len(dataset) < rows:
-                    raise ValueError(f"{dataset.name} has {len(dataset)} rows, fewer than {rows}")
-                dataset.resize(rows, axis=0)
+    with atomic.replacing(path) as partial:
+        partial.unlink(missing_ok=True)
+        with existing_hdf5(path) as file:
+            for frame in _frames(file["VTKHDF"], time):
+                append_frame(partial, frame)
+
+
+def _frames(root: h5py.Group, last: float) -> Iterator[Frame]:
+    """The frames until a time [s]; the file does not hold their step numbers."""
+    steps = root["Steps"]
+    times = numbers_of(steps["Values"])[: int(steps.attrs["NSteps"])]
+    (points,) = set(numbers_of(root["NumberOfPoints"])[: len(times)].tolist())
+    if not times[0] <= last or not np.all(np.diff(times) > 0):
+        raise ValueError(f"{times} s are no times of frames from the start to {last:g} s")
+    for number in range(np.count_nonzero(times <= last)):
+        rows = slice(number * points, (number + 1) * points)
+        fields = tuple(
+            Field(name, stored.attrs["unit"], stored.attrs["doc"], _rows(stored, rows))
+            for name, stored in root["PointData"].items()
+        )
+        yield Frame(float(times[number]), 0, _rows(root["Points"], rows), fields)
+
+
+def _rows(dataset: h5py.Dataset, rows: slice) -> NDArray[Any]:
+    """Rows of a dataset. Raises ValueError if it does not have them."""
+    values = numbers_of(dataset, rows)
+    if len(values) != rows.stop - rows.start:
+        raise ValueError(f"{dataset.name} has {len(dataset)} rows, fewer than {rows.stop}")
+    return values
 
 
 def _create_layout(root: h5py.Group, frame: Frame) -> None:
