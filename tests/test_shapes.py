@@ -254,6 +254,11 @@ def _surface_in_space(path):
     meshio.Mesh(np.hstack([QUAD_NODES, heights]), [("quad", QUADS)]).write(path)
 
 
+def _wedge(path):
+    nodes = np.vstack([np.zeros(3), np.eye(3), np.eye(3)[:2] + 1.0])
+    meshio.Mesh(nodes, [("wedge", np.arange(6)[None])]).write(path)
+
+
 def _volume(path):
     meshio.Mesh(np.vstack([np.zeros(3), np.eye(3)]), [("tetra", np.array([[0, 1, 2, 3]]))]).write(path)
 
@@ -262,15 +267,16 @@ def _volume(path):
     ("name", "write", "message"),
     [
         ("missing.vtk", lambda path: None, "there is no mesh file"),
-        ("empty.vtk", _without_cells, "holds no triangles or quadrilaterals"),
+        ("empty.vtk", _without_cells, "holds no triangles, quadrilaterals or tetrahedra"),
         ("rubbish.vtk", lambda path: path.write_text("rubbish\n"), "it is no valid .vtk file .*Illegal VTK header"),
         ("rubbish.vtu", lambda path: path.write_text("<VTKFile"), "it is no valid .vtu file"),
         ("region.unheard", lambda path: path.write_text("rubbish\n"), "Could not deduce file format"),
         ("overlapping.vtk", _overlapping, "overlap or have no area"),
         ("twice.vtk", _one_cell_twice, "overlap or have no area"),
         ("version.msh", lambda path: path.write_text("$MeshFormat\n9.1 0 8\n"), r"got 9\.1"),
-        ("hill.vtk", _surface_in_space, r"surface in space \(z from 0 to 0\.25 m\)"),
-        ("volume.vtk", _volume, "cells of kind tetra; known are triangle"),
+        ("hill.vtk", _surface_in_space, "a surface in space that is not closed: 6 edges"),
+        ("wedge.vtk", _wedge, "cells of kind wedge; known are triangle"),
+        ("volume.vtk", _volume, "has a volume; allowed: triangles and quadrilaterals in the x-y plane"),
         (
             "lost_node.msh",
             lambda path: path.write_text(MSH41.replace("4 3 5 9", "4 3 5 8")),

@@ -19,7 +19,7 @@ ALLOWED = {
     "validation": {"materials", "plugins", "mpm_core", "validation"},
     "grainlaw": {"materials", "plugins", "mpm_core", "validation", "grainlaw"},
 }
-HEAVY = {"h5py", "matplotlib", "meshio", "numba", "numpy", "pyvista", "scipy", "vtk", "vtkmodules"}
+HEAVY = {"h5py", "matplotlib", "meshio", "numba", "numpy", "pyvista", "scipy", "trimesh", "vtk", "vtkmodules"}
 
 
 def modules(folder: str) -> list[Path]:

@@ -87,11 +87,11 @@ def scenes() -> ShippedScenes:
 def described(name: str, scene: model.Scene) -> list[str]:
     """A row about a scene: what it is made of, and what its cost grows with, the material points and the duration."""
     laws = dict.fromkeys(scene.law(body.material).name for body in scene.body)
-    across, up = (scene.grid.upper[axis] - scene.grid.lower[axis] for axis in (0, 1))
+    size = (high - low for low, high in zip(scene.grid.lower, scene.grid.upper, strict=True))
     return [
         name,
         ", ".join(laws),
-        f"{across:g} x {up:g}",
+        " x ".join(f"{length:g}" for length in size),
         f"{scene.grid.cell_size:g}",
         f"{_points(scene):,}",
         f"{scene.time.end:g}",

@@ -1,12 +1,12 @@
-"""The cells of a mesh file: their corners in the plane, and the groups they belong to."""
+"""The cells of a mesh file: their corners, and the groups they belong to."""
 
 import contextlib
 import io
 import re
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,33 +26,56 @@ OUTLINES = {
     "quad8": (4, 1),
     "quad9": (4, 1),
 }
+# In which the first four nodes are the corners, between which edges are straight.
+SOLIDS = ("tetra", "tetra10")
 NO_AREA = ("vertex", "line")
+# Read by trimesh, which also takes what others write into them.
+SURFACE_FORMATS = (".stl", ".obj", ".ply", ".off")
 HDF5_SUFFIXES = (".cgns", ".h5m", ".hmf", ".med")
 FLAT = 1e-9  # of the size of a mesh
 FARTHEST = 1e9  # m
 
 
-def read_cells(file: Path, group: str | None) -> list[Points]:
-    """The outlines of the cells of a group, one array of shape (cells, nodes, 2) [m] for each kind of cell.
+class Cells(NamedTuple):
+    """The cells of a group, one array of shape (cells, nodes, 2 or 3) [m] for each kind of cell.
 
-    Raises ValueError, in one line, for a file that is no mesh of the plane and for a group that it does not hold.
+    Tetrahedra if they are solid, otherwise outlines, without the third coordinate if that is the same everywhere.
+    """
+
+    are_solid: bool
+    blocks: list[Points]
+
+
+def read_cells(file: Path, group: str | None) -> Cells:
+    """The tetrahedra of a group or, in a mesh without any, the outlines of its cells.
+
+    Raises ValueError, in one line, for a file that is no mesh and for a group that it does not hold.
     """
     mesh = _read_mesh(file)
     kinds = [block.type for block in mesh.cells]
-    strange = sorted({kind for kind in kinds if kind not in OUTLINES and not kind.startswith(NO_AREA)})
+    known = (*OUTLINES, *SOLIDS)
+    strange = sorted({kind for kind in kinds if kind not in known and not kind.startswith(NO_AREA)})
     if strange:
-        raise ValueError(f"mesh file {file} holds cells of kind {', '.join(strange)}; known are {', '.join(OUTLINES)}")
-    if not any(kind in OUTLINES for kind in kinds):
-        raise ValueError(f"mesh file {file} holds no triangles or quadrilaterals")
-    chosen = _chosen(file, mesh, group)
+        raise ValueError(f"mesh file {file} holds cells of kind {', '.join(strange)}; known are {', '.join(known)}")
+    if not any(block.type in known and len(block.data) for block in mesh.cells):
+        raise ValueError(f"mesh file {file} holds no triangles, quadrilaterals or tetrahedra")
+    are_solid = any(kind in SOLIDS for kind in kinds)
+    chosen = _chosen(file, mesh, group, are_solid)
     blocks = []
     for block, selected in zip(mesh.cells, chosen, strict=True):
-        if block.type in OUTLINES and selected.any():
-            nodes = np.asarray(block.data)[selected][:, _around(*OUTLINES[block.type])]
+        if block.type in _counted(are_solid) and selected.any():
+            around = range(4) if are_solid else _around(*OUTLINES[block.type])
+            nodes = np.asarray(block.data)[selected][:, list(around)]
             if nodes.min() < 0 or nodes.max() >= len(mesh.points):
                 raise ValueError(f"mesh file {file} has cells of nodes that it does not hold")
-            blocks.append(mesh.points[nodes])
-    return _in_plane(file, blocks)
+            blocks.append(np.asarray(mesh.points[nodes], dtype=float))
+    _refuse_far_nodes(file, blocks)
+    return Cells(are_solid, blocks if are_solid else _in_plane(blocks))
+
+
+def _counted(solid: bool) -> Iterable[str]:
+    """The kinds of cells that a region is made of."""
+    return SOLIDS if solid else OUTLINES
 
 
 def _around(corners: int, between: int) -> list[int]:
@@ -64,26 +87,26 @@ def _around(corners: int, between: int) -> list[int]:
     return nodes
 
 
-def _in_plane(file: Path, blocks: list[Points]) -> list[Points]:
-    """The blocks without their third coordinate, which must be the same everywhere."""
+def _refuse_far_nodes(file: Path, blocks: list[Points]) -> None:
     nodes = np.concatenate([block.reshape(-1, block.shape[2]) for block in blocks])
     if not np.isfinite(nodes).all():
         raise ValueError(f"mesh file {file} has coordinates that are not finite")
     farthest = float(np.abs(nodes).max())
     if farthest > FARTHEST:
         raise ValueError(f"mesh file {file} has a coordinate of {farthest:g}; lengths are in metres")
+
+
+def _in_plane(blocks: list[Points]) -> list[Points]:
+    """The blocks without their third coordinate, if it is the same everywhere."""
+    nodes = np.concatenate([block.reshape(-1, block.shape[2]) for block in blocks])
     size = np.ptp(nodes, axis=0)
-    if len(size) > 2 and size[2] > FLAT * size.max():
-        low, high = nodes[:, 2].min(), nodes[:, 2].max()
-        raise ValueError(
-            f"mesh file {file} is a surface in space (z from {low:g} to {high:g} m); a body lies in the x-y plane"
-        )
-    return [np.asarray(block[:, :, :2], dtype=float) for block in blocks]
+    is_flat = len(size) == 2 or size[2] <= FLAT * size.max()
+    return [block[:, :, :2] for block in blocks] if is_flat else blocks
 
 
-def _chosen(file: Path, mesh: Any, group: str | None) -> list[NDArray[np.bool_]]:
+def _chosen(file: Path, mesh: Any, group: str | None, solid: bool) -> list[NDArray[np.bool_]]:
     """Which cells of each block belong to the group; all of them if the file has no more than one."""
-    groups = _groups(mesh)
+    groups = _groups(mesh, solid)
     names = ", ".join(f'"{name}"' for name in groups)
     if group is None:
         if len(groups) > 1:
@@ -94,18 +117,19 @@ def _chosen(file: Path, mesh: Any, group: str | None) -> list[NDArray[np.bool_]]
     return groups[group]
 
 
-def _groups(mesh: Any) -> Groups:
-    """The physical groups that hold cells with an area; one without a name is known by its number."""
+def _groups(mesh: Any, solid: bool) -> Groups:
+    """The physical groups that hold cells which count; one without a name is known by its number."""
+    counted = _counted(solid)
     tags = mesh.cell_data.get("gmsh:physical", [np.zeros(len(block.data), dtype=int) for block in mesh.cells])
     used = {
         int(tag)
         for block, values in zip(mesh.cells, tags, strict=True)
-        if block.type in OUTLINES
+        if block.type in counted
         for tag in np.unique(values)
     }
     found: Groups = {}
     for name, (tag, dimension) in mesh.field_data.items():
-        if dimension != 2:
+        if dimension != 2 + solid:
             continue
         used.discard(int(tag))
         if name in mesh.cell_sets:
@@ -118,17 +142,18 @@ def _groups(mesh: Any) -> Groups:
         found[name] = members
     for tag in sorted(used - {0}):
         found[str(tag)] = [np.asarray(values) == tag for values in tags]
-    with_area = [block.type in OUTLINES for block in mesh.cells]
+    counts = [block.type in counted for block in mesh.cells]
     return {
         name: members
         for name, members in found.items()
-        if any(chosen.any() for chosen, wide in zip(members, with_area, strict=True) if wide)
+        if any(chosen.any() for chosen, taken in zip(members, counts, strict=True) if taken)
     }
 
 
 def _read_mesh(file: Path) -> Any:
     """The mesh of a file. Raises ValueError in one line: meshio itself prints several and leaves the process."""
     import meshio
+    import trimesh
 
     from grainlaw.mpm_core.output.hdf5_reading import refuse_endless
 
@@ -139,12 +164,15 @@ def _read_mesh(file: Path) -> Any:
         for part in _hdf5_files(file):
             refuse_endless(part)
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), _entities_without_group():
+            if file.suffix.lower() in SURFACE_FORMATS:
+                surface = trimesh.load_mesh(file, process=False)
+                return meshio.Mesh(surface.vertices, [("triangle", surface.faces)])
             return meshio.read(file)
     except InputError as error:
         raise ValueError(str(error)) from error
     except meshio.ReadError as error:
         raise ValueError(f"cannot read mesh file {file}: {_one_line(str(error))}") from error
-    except (Exception, SystemExit) as error:  # meshio raises whatever its parser meets
+    except (Exception, SystemExit) as error:  # they raise whatever their parsers meet
         reason = _one_line(said.getvalue()) if isinstance(error, SystemExit) else f"{type(error).__name__}: {error}"
         raise ValueError(
             f"cannot read mesh file {file}: it is no valid {file.suffix} file ({_one_line(reason)})"

@@ -25,7 +25,7 @@ from grainlaw.mpm_core.scene.section import (
     Vector,
     at_most,
 )
-from grainlaw.mpm_core.scene.shapes import SHAPES, AnyShape
+from grainlaw.mpm_core.scene.shapes import AnyShape, refused_mesh
 from grainlaw.mpm_core.scene.space_rules import fitted_to_space
 from grainlaw.mpm_core.space import SPACES, Space
 
@@ -186,7 +186,7 @@ class BodySection(Section):
     """A body: shape, material, initial state."""
 
     material: str = Field(description="name of a [material.NAME] table")
-    shape: AnyShape = Field(description="rectangle, disc, polygon or mesh; in 3D box, cylinder, cone or sphere")
+    shape: AnyShape = Field(description="rectangle, disc, polygon or mesh; in 3D box, cylinder, cone, sphere or mesh")
     density: float = Field(gt=0, le=LARGEST_DENSITY, description="initial bulk density [kg/m3]")
     points_per_cell: Literal[1, 4, 8, 9, 16, 25, 27, 36, 64] = Field(
         default=4,
@@ -314,8 +314,7 @@ class Scene(Section):
         self.boundary.refuse_for(self.in_space, self.left_is_axis)
         for number, body in enumerate(self.body):
             if len(body.shape.bounds()[0]) != self.in_space.axes:
-                known = ", ".join(SHAPES[self.in_space.axes])
-                raise ValueError(f"body.{number}.shape: not a shape of space = '{self.space}'; allowed: {known}")
+                raise ValueError(f"body.{number}.shape: {refused_mesh(body.shape)} in space = '{self.space}'")
             if (self.space == "plane_strain") == (body.initial_stress.out_of_plane_ratio is None):
                 raise ValueError(
                     f"body.{number}.initial_stress.out_of_plane_ratio belongs to space = 'plane_strain'; in "

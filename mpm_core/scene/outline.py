@@ -1,5 +1,7 @@
 """Which points lie inside closed outlines, so that regions that share an edge share no point and lose none."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,13 +12,14 @@ Points = NDArray[np.float64]
 SHIFT = 2.0**-36 * np.array([1.0, 0.7548776662466927, 0.5698402909980532])
 
 
-def off_edges(points: Points) -> Points:
+def off_edges(points: Points, along: Sequence[int] = (0, 1, 2)) -> Points:
     """The points, shape (n, axes) [m], shifted by far less than a cell: none lies on an edge or a face any more.
 
-    The shift depends on the point alone, so that every region decides alike about a point on a common edge.
+    The shift depends on the point alone, so that every region decides alike about a point on a common edge. `along` are
+    the axes of the coordinates.
     """
     scale = np.abs(points).max(axis=1, initial=1.0)
-    return points + scale[:, None] * SHIFT[: points.shape[1]]
+    return points + scale[:, None] * SHIFT[list(along[: points.shape[1]])]
 
 
 def closed_edges(corners: Points) -> Points:

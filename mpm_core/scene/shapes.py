@@ -1,18 +1,16 @@
 """Shapes of bodies in the plane, all shapes by kind, and the regular lattice of points that fills one."""
 
-from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import Field, model_validator
 
-from grainlaw.mpm_core.scene.mesh_file import read_cells
-from grainlaw.mpm_core.scene.outline import Points, areas, closed_edges, enclosed, enclosed_area, off_edges, outer_edges
+from grainlaw.mpm_core.scene.mesh_region import MeshRegion
+from grainlaw.mpm_core.scene.outline import Points, closed_edges, enclosed, off_edges, outer_edges
 from grainlaw.mpm_core.scene.shape import Shape
 from grainlaw.mpm_core.scene.solids import Box, Cone, Cylinder, Sphere
 
-SAME_AREA = 1e-6  # relative; interface nodes of two parts may differ by the digits of the file
 Corner = Annotated[tuple[float, float], Field(strict=False)]
 
 
@@ -89,42 +87,22 @@ class Polygon(Shape):
         return enclosed(points, outer_edges(closed_edges(np.array([self.vertices]))))
 
 
-class MeshRegion(Shape):
-    """The region covered by the triangles and quadrilaterals of a mesh file, in any format that meshio reads."""
-
-    kind: Literal["mesh"]
-    file: Path = Field(strict=False, description="mesh file; a relative path counts from the scene file")
-    group: str | None = Field(default=None, description="physical group of a gmsh file")
-    _outline: Points = PrivateAttr()
-
-    @model_validator(mode="after")
-    def _read(self) -> "MeshRegion":
-        cells = read_cells(self.file, self.group)
-        self._outline = outer_edges(np.concatenate([closed_edges(block) for block in cells]))
-        sizes = np.concatenate([areas(block) for block in cells])
-        twice = sizes.sum() - enclosed_area(self._outline)
-        if not (sizes.min() > 0 and twice <= min(SAME_AREA * sizes.sum(), 0.5 * sizes.min())):
-            raise ValueError(f"the cells of mesh file {self.file} overlap or have no area")
-        return self
-
-    def bounds(self) -> tuple[Corner, Corner]:
-        """The box around the cells."""
-        corners = self._outline.reshape(-1, 2)
-        return tuple(corners.min(axis=0)), tuple(corners.max(axis=0))
-
-    def contains(self, points: Points) -> NDArray[np.bool_]:
-        """Inside any cell, or on the lower and left edges of the region."""
-        return enclosed(points, self._outline)
-
-
 AnyShape = Annotated[
     Rectangle | Disc | Polygon | MeshRegion | Box | Cylinder | Cone | Sphere, Field(discriminator="kind")
 ]
 # The shapes of the spaces with two axes and with three, by kind.
 SHAPES: dict[int, dict[str, type[Shape]]] = {
     2: {"rectangle": Rectangle, "disc": Disc, "polygon": Polygon, "mesh": MeshRegion},
-    3: {"box": Box, "cylinder": Cylinder, "cone": Cone, "sphere": Sphere},
+    3: {"box": Box, "cylinder": Cylinder, "cone": Cone, "sphere": Sphere, "mesh": MeshRegion},
 }
+
+
+def refused_mesh(shape: AnyShape) -> str:
+    """What is wrong with a shape that has not as many axes as its space; only that of a mesh file can be."""
+    file = shape.file if isinstance(shape, MeshRegion) else ""
+    if len(shape.bounds()[0]) == 2:
+        return f"mesh file {file} lies in the x-y plane; allowed: a closed surface or tetrahedra"
+    return f"mesh file {file} has a volume; allowed: triangles and quadrilaterals in the x-y plane"
 
 
 def points_along_edge(points_per_cell: int, axes: int) -> int:
