@@ -8,7 +8,7 @@ import pytest
 from grains_for_tests import DENSITY, DEPTH, HALF_WIDTHS, HEIGHTS, RADIUS, SPACING, WRITERS, blocks, write_run
 
 from grainlaw.materials import InputError
-from grainlaw.validation.grains.coarse_graining import Kernel, column_lattice
+from grainlaw.validation.grains.coarse_graining import column_lattice, kernel_of
 from grainlaw.validation.grains.distance import Verdict, compare, profile_distance, verdict
 from grainlaw.validation.grains.observation import read_observation, write_observation
 from grainlaw.validation.grains.observe import observe_folder
@@ -37,7 +37,7 @@ def test_the_kernel_keeps_the_volume_at_the_floor_too():
     rng = np.random.default_rng(1)
     positions = np.column_stack([rng.uniform(-0.2, 0.2, 500), np.zeros(500), rng.uniform(0.0, 0.3, 500)])
     volumes = rng.uniform(1e-7, 2e-7, 500)
-    field = Kernel(lattice, 0.015, positions, DEPTH).field(volumes)
+    field = kernel_of(positions, lattice, 0.015, DEPTH).field(volumes)
     assert field.sum() * SPACING**2 * DEPTH == pytest.approx(volumes.sum(), rel=1e-4)
 
 

@@ -5,6 +5,7 @@ from grainlaw.validation.dem.description import (
     Collapse,
     Compression,
     Contact,
+    CylinderCollapse,
     Floor,
     Grains,
     PlaneShear,
@@ -13,6 +14,8 @@ from grainlaw.validation.dem.description import (
 )
 
 END_TIMES = {1: 1.0, 2: 1.2, 4: 1.5, 6: 1.8}
+CYLINDER_END_TIMES = {0.5: 0.9, 1: 1.1, 2: 1.3}
+FOUR, TWO = (1, 2, 3, 4), (1, 2)
 
 
 def column(aspect_ratio: int, floor: Floor, liggghts_seeds: tuple[int, ...], yade_seeds: tuple[int, ...]) -> Collapse:
@@ -34,8 +37,20 @@ def variant(name: str, purpose: str, **changes: object) -> Collapse:
     return reference.model_copy(update={"name": f"collapse-a2-glued-{name}", "purpose": purpose, **changes})
 
 
+def cylinder(aspect_ratio: float, radius: float) -> CylinderCollapse:
+    """The cylinder with one aspect ratio on the glued floor, of some ten thousand grains."""
+    return CylinderCollapse(
+        name=f"cylinder-a{aspect_ratio:g}-glued",
+        purpose=f"cylinder with H0/r0 = {aspect_ratio:g} released on a glued floor",
+        aspect_ratio=aspect_ratio,
+        radius=radius,
+        floor="glued",
+        end=CYLINDER_END_TIMES[aspect_ratio],
+        liggghts_seeds=TWO,
+    )
+
+
 # Up to the fastest flow in steps, so that the wall never jerks, then down to the slowest.
-FOUR, TWO = (1, 2, 3, 4), (1, 2)
 SHEAR_STAGES = tuple(
     ShearStage(nominal_inertial_number=number, transient_strain=transient, average_strain=average)
     for number, transient, average in (
@@ -71,6 +86,9 @@ CASES: tuple[AnyCase, ...] = (
     column(1, "flat", FOUR, TWO),
     column(4, "flat", FOUR, TWO),
     column(6, "flat", FOUR, ()),
+    cylinder(0.5, radius=0.27),
+    cylinder(1, radius=0.225),
+    cylinder(2, radius=0.225),
     variant("stiff", "Young's modulus 1e9 Pa", contact=Contact(youngs_modulus=1e9), time_step=1e-5),
     variant("deep", "depth of 8 mean diameters", depth=0.12),
     variant(

@@ -4,14 +4,12 @@ from functools import cache
 
 import numpy as np
 
-from grainlaw.validation.dem.description import Collapse
+from grainlaw.validation.dem.geometry import MARGIN, Column, geometry_of, glued_grains
 from grainlaw.validation.dem.liggghts import SETTLING_FRICTION, contact_values, data_file, decks, template_texts
 from grainlaw.validation.dem.packing import (
     GLUED_DEPTH,
     Array,
     Packing,
-    glued_layer,
-    loose,
     mean_volume,
     random_radii,
 )
@@ -21,8 +19,6 @@ LOOSE_FRACTION = 0.27
 FILL = 0.64 * 1.1
 # Time [s] for which the grains settle after the highest one has reached the floor.
 SETTLING_TIME = 0.5
-# Space below the floor and beyond its ends [m].
-MARGIN = 0.05
 # YADE's rolling spring is a constant [N m/rad]; epsd2 takes the tangential stiffness times the square of the effective
 # radius, which is this much for 15 mm grains that carry 0.3 N, the load in the middle of a 0.3 m column.
 ROLLING_STIFFNESS = 0.3
@@ -31,36 +27,35 @@ Files = dict[str, str]
 
 
 @cache
-def floor_of(case: Collapse, seed: int) -> tuple[Packing | None, float]:
+def floor_of(case: Column, seed: int) -> tuple[Packing | None, float]:
     """The glued grains (None on a flat floor) and the level of the plane below them [m]."""
     if case.floor == "flat":
         return None, 0.0
     random = np.random.default_rng([seed, 1])
-    layer = glued_layer(case.grains, (-case.reach, case.reach), (0.0, case.depth), False, random)
+    layer = glued_grains(case, random)
     depth = GLUED_DEPTH * case.grains.mean_diameter
     return Packing(layer.centres - [0.0, 0.0, depth], layer.radii), -depth - case.grains.largest_diameter / 2.0
 
 
-def settling_files(case: Collapse, seed: int) -> Files:
+def settling_files(case: Column, seed: int) -> Files:
     """Deck and data of the LIGGGHTS run that makes the packing (written to `packing.txt`)."""
     random = np.random.default_rng(seed)
-    base = 2.0 * case.half_width * case.depth
-    number = round(FILL * base * case.initial_height / mean_volume(case.grains))
-    top = number * mean_volume(case.grains) / base / LOOSE_FRACTION
+    geometry = geometry_of(case)
+    number = round(FILL * geometry.base * case.initial_height / mean_volume(case.grains))
+    top = number * mean_volume(case.grains) / geometry.base / LOOSE_FRACTION
     low = 0.5 * case.grains.mean_diameter
-    space = np.array([[-case.half_width, case.half_width], [0.0, case.depth], [low, top + low]])
-    falling = loose(random_radii(case.grains, number, random), space, (False, True, False), random)
+    falling = geometry.loose_grains(random_radii(case.grains, number, random), low, top + low, random)
     fall = np.sqrt(2.0 * top / case.gravity)
     deck = decks().get_template("settle.in.j2")
     return {
-        "grains.data": data_file(falling, floor_of(case, seed)[0], case.grains.density, _box(case, top + low)),
+        "grains.data": data_file(falling, floor_of(case, seed)[0], case.grains.density, geometry.box(top + low)),
         "deck.in": deck.render(
             **_common(case, seed, SETTLING_FRICTION), thermo=2000, steps=round((fall + SETTLING_TIME) / case.time_step)
         ),
     }
 
 
-def release_files(case: Collapse, code: str, seed: int, packing: Packing) -> Files:
+def release_files(case: Column, code: str, seed: int, packing: Packing) -> Files:
     """Deck and data of the run that relaxes and releases the cut `packing` in one of the codes."""
     glued = floor_of(case, seed)[0]
     values = _common(case, seed, case.contact.friction) | {
@@ -69,7 +64,7 @@ def release_files(case: Collapse, code: str, seed: int, packing: Packing) -> Fil
         "outputs": outputs(case),
     }
     if code == "liggghts":
-        box = _box(case, case.initial_height + MARGIN)
+        box = geometry_of(case).box(case.initial_height + MARGIN)
         return {
             "grains.data": data_file(packing, glued, case.grains.density, box),
             "deck.in": decks().get_template("collapse.in.j2").render(values),
@@ -86,24 +81,25 @@ def templates(code: str) -> Files:
     return template_texts("contact_law.in.j2", "settle.in.j2", release)
 
 
-def output_steps(case: Collapse) -> int:
+def output_steps(case: Column) -> int:
     """Steps between two outputs."""
     return round(case.output_interval / case.time_step)
 
 
-def outputs(case: Collapse) -> int:
+def outputs(case: Column) -> int:
     """Number of outputs after the one at the release."""
     return round(case.end / case.output_interval)
 
 
-def _box(case: Collapse, top: float) -> Array:
-    return np.array([[-case.reach - MARGIN, case.reach + MARGIN], [0.0, case.depth], [-MARGIN, top]])
-
-
-def _common(case: Collapse, seed: int, friction: float) -> dict[str, object]:
+def _common(case: Column, seed: int, friction: float) -> dict[str, object]:
+    geometry = geometry_of(case)
     return {
         "case": case,
         "seed": seed,
+        "boundary": geometry.boundary,
+        "walls": geometry.walls,
+        "with_contacts": geometry.with_contacts,
+        "dumped": "all" if geometry.with_contacts else "mobile",
         "skin": 0.2 * case.grains.mean_diameter,
         "glued": case.floor == "glued",
         "floor_level": floor_of(case, seed)[1],

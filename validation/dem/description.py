@@ -58,22 +58,27 @@ class Case(Described):
         return self.liggghts_seeds if code == "liggghts" else self.yade_seeds
 
 
-class Collapse(Case):
-    """A column between two smooth walls that vanish at t = 0; plane in the mean, periodic over `depth`.
+class Release(Case):
+    """A column that is released at t = 0 on a floor.
 
-    The packing settles under gravity with low friction, is cut at the initial height (grains whose centre lies above
-    are taken out), relaxes with the full friction between the walls, and is released to both sides.
+    The packing settles under gravity with low friction between smooth walls, is cut at the initial height (grains whose
+    centre lies above are taken out), relaxes with the full friction, and the walls vanish.
     """
 
-    kind: Literal["collapse"] = "collapse"
     aspect_ratio: Positive
     floor: Floor
-    half_width: Positive = 0.15
-    depth: Positive = 0.06
     gravity: Positive = 9.81
     end: Positive
     output_interval: Positive = 0.05
     relaxation: Positive = 0.15
+
+
+class Collapse(Release):
+    """A column between two walls, released to both sides; plane in the mean, periodic over `depth`."""
+
+    kind: Literal["collapse"] = "collapse"
+    half_width: Positive = 0.15
+    depth: Positive = 0.06
 
     @property
     def initial_height(self) -> float:
@@ -83,8 +88,28 @@ class Collapse(Case):
     @property
     def reach(self) -> float:
         """Half length of the floor [m], well beyond the runout of the pile and, on a flat floor, of single grains."""
-        pile = self.half_width * (2.0 + 3.5 * float(self.aspect_ratio) ** 0.75)
-        return ROLLING_REACH * pile if self.floor == "flat" else pile
+        return _with_rolling(self, self.half_width * (2.0 + 3.5 * float(self.aspect_ratio) ** 0.75))
+
+
+class CylinderCollapse(Release):
+    """A cylinder of grains, in a wall of its radius, released to all sides."""
+
+    kind: Literal["cylinder"] = "cylinder"
+    radius: Positive = 0.225
+
+    @property
+    def initial_height(self) -> float:
+        """Height of the cylinder [m]: aspect ratio times radius."""
+        return self.aspect_ratio * self.radius
+
+    @property
+    def reach(self) -> float:
+        """Radius of the floor [m], well beyond the runout of the pile (1.25 a radii) and of single grains."""
+        return _with_rolling(self, self.radius * (2.0 + 1.8 * self.aspect_ratio))
+
+
+def _with_rolling(case: Release, pile: float) -> float:
+    return ROLLING_REACH * pile if case.floor == "flat" else pile
 
 
 class ShearStage(Described):
@@ -146,4 +171,4 @@ class Compression(Case):
     gas_fraction: Annotated[float, Field(gt=0, lt=0.4)] = 0.3
 
 
-AnyCase = Collapse | PlaneShear | ShearStart | Compression
+AnyCase = Collapse | CylinderCollapse | PlaneShear | ShearStart | Compression

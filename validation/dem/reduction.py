@@ -14,6 +14,8 @@ from grainlaw.validation.grains.observation import Observation, write_observatio
 from grainlaw.validation.grains.observe import observe_folder
 
 COLLAPSES, PROVENANCE = "collapse", "provenance.json"
+# The kinds of cases whose runs become observations.
+RELEASES = ("collapse", "cylinder")
 # Rows kept of a compression test: enough to fit slopes to, and a small file.
 COMPRESSION_ROWS = 60
 # A stage whose friction scatters more than this between blocks was still changing: steady ones stay below 0.01.
@@ -33,7 +35,7 @@ def reduce_runs(folder: Path, into: Path) -> list[Path]:
     (into / COLLAPSES).mkdir(parents=True, exist_ok=True)
     written = []
     for run, record in runs:
-        if record["kind"] == "collapse":
+        if record["kind"] in RELEASES:
             path = into / COLLAPSES / f"{record['case']}_{record['code']}_s{record['seed']}.h5"
             observation = observe_folder(run)
             write_observation(path, observation if _shows_stress(record) else without_stress(observation))

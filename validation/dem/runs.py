@@ -13,7 +13,8 @@ import numpy as np
 from grainlaw.materials.atomic import write_text
 from grainlaw.materials.errors import InputError, SimulationError
 from grainlaw.validation.dem import collapse, compression, shear, shear_start
-from grainlaw.validation.dem.description import AnyCase, Collapse, Compression, PlaneShear, ShearStart
+from grainlaw.validation.dem.description import AnyCase, Collapse, Compression, CylinderCollapse, PlaneShear, ShearStart
+from grainlaw.validation.dem.geometry import Column, geometry_of
 from grainlaw.validation.dem.packing import Packing, cut
 from grainlaw.validation.dem.programs import LIGGGHTS, PROGRAMS, YADE, Cost, installed_version, run_program
 
@@ -86,14 +87,14 @@ def perform(run: Run, out: Path, time_limit: float, report: Report = lambda _: N
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.iterdir():
         old.unlink()
-    record = _perform_collapse if isinstance(run.case, Collapse) else _perform_cell
+    record = _perform_collapse if isinstance(run.case, Column) else _perform_cell
     content = record(run, out, folder, time_limit, report)
     content["inputs_hash"] = inputs_hash(run)
     write_text(folder / RECORD, json.dumps(content, indent=1) + "\n")
     return folder
 
 
-def settled_packing(case: Collapse, seed: int, out: Path, time_limit: float, report: Report) -> Packing:
+def settled_packing(case: Column, seed: int, out: Path, time_limit: float, report: Report) -> Packing:
     """The cut packing of a column, from the store of packings or made by LIGGGHTS; the same for both codes."""
     files = collapse.settling_files(case, seed)
     folder = out / "packings" / files_hash(files)
@@ -109,7 +110,8 @@ def settled_packing(case: Collapse, seed: int, out: Path, time_limit: float, rep
 
 def _perform_collapse(run: Run, out: Path, folder: Path, time_limit: float, report: Report) -> dict[str, Any]:
     case = run.case
-    assert isinstance(case, Collapse)
+    assert isinstance(case, Column)
+    geometry = geometry_of(case)
     packing = settled_packing(case, run.seed, out, time_limit, report)
     files = collapse.release_files(case, run.code, run.seed, packing)
     _write(folder, files)
@@ -124,20 +126,19 @@ def _perform_collapse(run: Run, out: Path, folder: Path, time_limit: float, repo
     steps = numbers[-1] + round(case.relaxation / case.time_step)
     return _record(run, files, cost, steps, len(packing)) | {
         "floor": case.floor,
-        "half_width": case.half_width,
+        **geometry.record,
         "initial_height": case.initial_height,
-        "depth": case.depth,
         "gravity": case.gravity,
-        "initial_solid_fraction": packing.volume / (2.0 * case.half_width * case.depth * case.initial_height),
+        "initial_solid_fraction": packing.volume / (geometry.base * case.initial_height),
         "release_time": 0.0,
         "mobile_types": [1],
-        "box": [[-case.reach, case.reach], [0.0, case.depth], [0.0, None]],
-        "periodic": [False, True, False],
-        "frames": [
-            {"file": f"grains_{n:07d}.txt", "contacts": f"contacts_{n:07d}.txt", "time": n * case.time_step}
-            for n in numbers
-        ],
+        "frames": [_frame(n, case.time_step, geometry.with_contacts) for n in numbers],
     }
+
+
+def _frame(step: int, time_step: float, with_contacts: bool) -> dict[str, Any]:
+    contacts = {"contacts": f"contacts_{step:07d}.txt"} if with_contacts else {}
+    return {"file": f"grains_{step:07d}.txt", **contacts, "time": step * time_step}
 
 
 def _perform_cell(run: Run, out: Path, folder: Path, time_limit: float, report: Report) -> dict[str, Any]:
@@ -150,7 +151,13 @@ def _perform_cell(run: Run, out: Path, folder: Path, time_limit: float, report: 
 
 
 def _kind(case: AnyCase) -> Any:
-    modules = {Collapse: collapse, PlaneShear: shear, ShearStart: shear_start, Compression: compression}
+    modules = {
+        Collapse: collapse,
+        CylinderCollapse: collapse,
+        PlaneShear: shear,
+        ShearStart: shear_start,
+        Compression: compression,
+    }
     return modules[type(case)]
 
 

@@ -7,6 +7,7 @@ from enum import StrEnum
 import numpy as np
 
 from grainlaw.materials import InputError
+from grainlaw.validation.grains.coarse_graining import column_weights
 from grainlaw.validation.grains.observation import Observation
 from grainlaw.validation.grains.snapshot import Array
 
@@ -32,10 +33,14 @@ def verdict(distance: float, band: float) -> Verdict:
 
 
 def profile_distance(first: Observation, second: Observation, time: float) -> float:
-    """E_A: the area between two surfaces over the mean of the areas below them, at a time [s] that both cover."""
+    """E_A: the area between two surfaces over the mean of the areas below them, at a time [s] that both cover.
+
+    Around an axis these are volumes, integrals over r dr.
+    """
     x = first.x if len(first.x) >= len(second.x) else second.x
     one, other = surface_at(first, time, x), surface_at(second, time, x)
-    return float(np.abs(one - other).sum() / (0.5 * (one + other).sum()))
+    weights = column_weights(x, first.space)
+    return float((weights * np.abs(one - other)).sum() / (0.5 * (weights * (one + other)).sum()))
 
 
 def surface_at(observation: Observation, time: float, x: Array) -> Array:
@@ -143,7 +148,7 @@ def compare(observation: Observation, references: Sequence[Observation]) -> Comp
     """Compare an observation with references of the same column, as if it were one more of them.
 
     E_A is the mean over the references, each of which has scatter of its own; the measures stand against their mean
-    over the references. Raises InputError if the columns are of different size.
+    over the references. Raises InputError if the columns are of different size, or one is a cylinder.
     """
     for reference in references:
         refuse_other_size(observation, reference)
@@ -176,13 +181,19 @@ def _relative(measure: Measure, observation: Observation, references: Sequence[O
 
 # Columns whose areas at the start differ by more than this factor are not the same case.
 SAME_SIZE = 3.0
+KIND = {"plane_strain": "a plane column", "axisymmetric": "a cylinder"}
 
 
 def refuse_other_size(first: Observation, second: Observation) -> None:
     """Raise InputError if the columns at the start differ so much that the units, or the cases, cannot be the same."""
-    areas = [float(found.surface[0].sum() * (found.x[1] - found.x[0])) for found in (first, second)]
+    if first.space is not second.space:
+        raise InputError(
+            f"{first.label} is {KIND[first.space.name]}, {second.label} {KIND[second.space.name]}: not the same column"
+        )
+    areas, unit = [found.content(0) for found in (first, second)], "m3" if first.space.hoop else "m2"
+    what = "a volume" if first.space.hoop else "an area"
     if not 1.0 / SAME_SIZE < areas[0] / max(areas[1], 1e-300) < SAME_SIZE:
         raise InputError(
-            f"{first.label} starts with an area of {areas[0]:.3g} m2, {second.label} with {areas[1]:.3g} m2: "
+            f"{first.label} starts with {what} of {areas[0]:.3g} {unit}, {second.label} with {areas[1]:.3g} {unit}: "
             "not the same column, or not the same units"
         )

@@ -3,6 +3,9 @@
 In HDF5: the attributes `description` (JSON: provenance) and `grainlaw_observation` (version of this format, 1);
 `x`, `z` [m]; `time` [s]; `surface` (time, x) [m]; `series/NAME` (time); `snapshots/time` [s] and `snapshots/NAME`
 (time, x, z) with solid_fraction, velocity_x, velocity_z and, where contacts were told, stress_xx, stress_zz, stress_xz.
+
+The description's `space` says what x is: the way along the slope ("plane_strain", the default), or the distance from
+the axis of a cylinder ("axisymmetric"). Energies are then those of the whole body, in J.
 """
 
 import json
@@ -16,6 +19,8 @@ import numpy as np
 from grainlaw.materials import InputError, atomic
 from grainlaw.materials.errors import nearest_name
 from grainlaw.mpm_core.output.hdf5_reading import UNREADABLE, existing_hdf5, numbers_of
+from grainlaw.mpm_core.space import AXISYMMETRIC, PLANE_STRAIN, Space
+from grainlaw.validation.grains.coarse_graining import column_weights
 from grainlaw.validation.grains.snapshot import Array
 
 FORMAT_ATTRIBUTE = "grainlaw_observation"
@@ -25,12 +30,15 @@ SERIES_UNITS = {
     "front_left": "m",
     "front_right": "m",
     "height": "m",
+    "radius_of_98_percent": "m",
     "center_of_mass_x": "m",
     "center_of_mass_height": "m",
     "interior_solid_fraction": "1",
     "kinetic_energy": "J/m",
     "potential_energy": "J/m",
 }
+# In which grains are compared.
+SPACES = {space.name: space for space in (PLANE_STRAIN, AXISYMMETRIC)}
 # By the number of axes: series in full; surfaces to 1e-7, fields to 5e-4 of their value, finer than one grain tells.
 STORED_TYPES: dict[int, type[np.floating[Any]]] = {1: np.float64, 2: np.float32, 3: np.float16}
 SNAPSHOT_UNITS = {
@@ -49,7 +57,7 @@ class Observation:
 
     description      what was observed: case, code, seed, cost and whatever else the run told
     times            since the release, shape (t,) [s]
-    x, z             centres of the lattice's cells [m]
+    x, z             centres of the lattice's cells [m]; in axisymmetry x is the distance from the axis
     surface          height of the surface above the floor, shape (t, x) [m]
     series           quantities of `SERIES_UNITS`, each of shape (t,)
     snapshot_times   of the fields, shape (k,) [s]
@@ -72,6 +80,21 @@ class Observation:
         seed = self.description.get("seed")
         return name if seed is None else f"{name} {seed}"
 
+    @property
+    def space(self) -> Space:
+        """Plane strain, or axisymmetry, where x is the distance from the axis."""
+        return SPACES[self.description.get("space") or PLANE_STRAIN.name]
+
+    def content(self, number: int) -> float:
+        """What lies below the surface at one time: an area [m2], in axisymmetry a volume [m3]."""
+        spacing = float(self.x[1] - self.x[0])
+        around = 2.0 * np.pi if self.space.hoop else 1.0
+        return around * spacing * float(self.surface[number] @ column_weights(self.x, self.space))
+
+    def unit_of(self, name: str) -> str:
+        """The unit of a series: energies are per metre of width in plane strain alone."""
+        return SERIES_UNITS[name].removesuffix(PLANE_STRAIN.amount if self.space.hoop else "")
+
     def of(self, name: str) -> Array:
         """One series. Raises InputError if it was not observed."""
         if name not in self.series:
@@ -93,7 +116,7 @@ def write_observation(path: Path, observation: Observation) -> None:
         ):
             _write(file, name, values, unit)
         for name, values in observation.series.items():
-            _write(file, f"series/{name}", values, SERIES_UNITS[name])
+            _write(file, f"series/{name}", values, observation.unit_of(name))
         for name, values in observation.snapshots.items():
             _write(file, f"snapshots/{name}", values, SNAPSHOT_UNITS[name])
 
@@ -132,6 +155,8 @@ def read_observation(path: Path) -> Observation:
             )
     except UNREADABLE as error:
         raise InputError(f"{path} cannot be read as an observation: {error}") from None
+    if (space := read.description.get("space") or PLANE_STRAIN.name) not in SPACES:
+        raise InputError(f"{path}: its space is {space!r}; allowed: {', '.join(SPACES)}")
     if read.surface.shape != (len(read.times), len(read.x)):
         raise InputError(
             f"{path}: surface has the shape {read.surface.shape}, expected {(len(read.times), len(read.x))}"

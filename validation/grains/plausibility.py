@@ -20,6 +20,10 @@ LIGHTEST, HEAVIEST = 10.0, 25000.0
 SAME_DENSITY = 2.0
 # Of the depth; a box a few grains deep is filled to within one of them.
 SAME_DEPTH = 0.3
+# Of a cylinder along x and y: the radii of gyration of grains at random differ by less.
+SAME_WIDTH = 1.25
+# Of the centre of mass from the axis, in the standard deviation along x; a packing of grains is off by 1 to 2 %.
+LARGEST_SHIFT = 0.05
 # Of the way along x: a column that spreads to one side falls by more.
 STAYS_LEVEL = 0.1
 # Of the grains along y, without a few that fly or fell beside the box.
@@ -51,7 +55,32 @@ def check_density_of_grains(path: object, density: Array, grain_density: float) 
 def check_geometry(snapshots: Sequence[GrainSnapshot], description: RunDescription) -> None:
     """Raises InputError where grains fall along another axis than z, or do not span the depth along y."""
     _refuse_fall_along_y(snapshots)
-    _refuse_other_depth(snapshots[0], description.depth)
+    if description.depth is not None and not description.is_round:
+        _refuse_other_depth(snapshots[0], description.depth)
+
+
+def axis_of(first: GrainSnapshot, description: RunDescription) -> tuple[float, float]:
+    """The axis of a cylinder in x and y [m]: as described, or else that of the first frame's centre of mass.
+
+    Raises InputError where the grains stand around another one, or around none.
+    """
+    x, y, _ = _center(first)
+    wide, long = np.std(first.positions[:, :2], axis=0)
+    if not 1.0 / SAME_WIDTH < wide / max(long, 1e-300) < SAME_WIDTH:
+        raise InputError(
+            f"{RUN_DESCRIPTION_NAME}: space = 'axisymmetric', but the grains lie {2.0 * wide:.3g} m around their "
+            f"centre along x and {2.0 * long:.3g} m along y: no cylinder, or not all of it"
+        )
+    if description.axis is None:
+        return float(x), float(y)
+    beside = float(np.hypot(x - description.axis[0], y - description.axis[1]))
+    diameter = float(sphere_diameters(first.solid_volumes).mean())
+    if beside > max(diameter, LARGEST_SHIFT * wide):
+        raise InputError(
+            f"{RUN_DESCRIPTION_NAME}: axis = {list(description.axis)}, but the centre of mass of the first frame is "
+            f"{beside:.3g} m beside it, at x = {x:.4g} m, y = {y:.4g} m; without 'axis' it is taken from there"
+        )
+    return description.axis
 
 
 def _refuse_fall_along_y(snapshots: Sequence[GrainSnapshot]) -> None:

@@ -1,8 +1,9 @@
 """`run.json`: what a DEM run was, beside its dumps."""
 
 from pathlib import Path
+from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from grainlaw.materials import InputError
 from grainlaw.materials.faults import fault_in_words
@@ -24,7 +25,9 @@ class FrameEntry(BaseModel):
 class RunDescription(BaseModel):
     """A DEM run in SI units; x along the slope, y along the depth, z up; other keys are kept as provenance.
 
-    depth          length along y over which the grains are averaged [m]
+    space          "plane_strain": a column that is plane in the mean; "axisymmetric": a cylinder
+    depth          length along y over which the grains are averaged [m]; needed in plane strain, not used otherwise
+    axis           of the cylinder in x and y [m]; without it, the centre of mass of the first frame
     frames         the dumps; without it, every file of the folder that looks like one
     grains_files   instead of frames: a pattern of the dumps' names
     release_time   on the run's clock [s]; all other times count from it
@@ -37,7 +40,9 @@ class RunDescription(BaseModel):
 
     model_config = ConfigDict(extra="allow", frozen=True, allow_inf_nan=False)
 
-    depth: float = Field(gt=0)
+    space: Literal["plane_strain", "axisymmetric"] = "plane_strain"
+    depth: float | None = Field(default=None, gt=0)
+    axis: tuple[float, float] | None = None
     grain_density: float = Field(gt=0)
     case: str = ""
     code: str = ""
@@ -58,6 +63,17 @@ class RunDescription(BaseModel):
     gravity: float = Field(default=9.81, gt=0)
     solid_fraction: float | None = Field(default=None, gt=0, lt=1)
     mobile_types: tuple[int, ...] | None = None
+
+    @model_validator(mode="after")
+    def _plane_columns_have_a_depth(self) -> "RunDescription":
+        if self.depth is None and not self.is_round:
+            raise ValueError("'depth' is missing; only a cylinder, space = 'axisymmetric', has none")
+        return self
+
+    @property
+    def is_round(self) -> bool:
+        """Whether the grains are averaged around an axis."""
+        return self.space == "axisymmetric"
 
 
 def read_run_description(folder: Path) -> RunDescription:

@@ -31,7 +31,7 @@ def surface_height(phi: Array, lattice: Lattice, bulk: float) -> Array:
 def fronts(x: Array, height: Array, grain_diameter: float) -> tuple[float, float]:
     """Left and right end of the material [m]: where the surface falls below one grain; linear between cell centres.
 
-    NaN where the surface is nowhere as high.
+    Around an axis the second is the radius of the pile, the first nothing. NaN where the surface is nowhere as high.
     """
     high = np.flatnonzero(height > grain_diameter)
     if len(high) == 0:
@@ -48,12 +48,15 @@ def _crossing(x: Array, height: Array, last: int, outwards: int, level: float) -
 
 
 def interior_solid_fraction(phi: Array, height: Array, lattice: Lattice, width: float) -> float:
-    """Mean phi where the kernel reaches neither surface nor sides; NaN where there is no such cell."""
+    """Mean phi where the kernel reaches neither surface nor sides, by volume; NaN where there is no such cell."""
     reach = 2 * int(np.ceil(MARGIN_BELOW_SURFACE * width / lattice.spacing)) + 1
-    ceiling = minimum_filter1d(height, reach, mode="constant") - MARGIN_BELOW_SURFACE * width
+    # Beyond the axis the surface goes on; beyond the ends of a plane column there is none.
+    whole = np.concatenate([height[::-1], height]) if lattice.space.hoop else height
+    ceiling = minimum_filter1d(whole, reach, mode="constant")[-len(height) :] - MARGIN_BELOW_SURFACE * width
     above_floor = lattice.z - lattice.floor
     inside = (above_floor >= MARGIN_ABOVE_FLOOR * width) & (above_floor <= ceiling[:, None])
-    return float(phi[inside].mean()) if inside.any() else np.nan
+    weights = np.broadcast_to(lattice.weights[:, None], phi.shape)
+    return float(np.average(phi[inside], weights=weights[inside])) if inside.any() else np.nan
 
 
 def bulk_solid_fraction(phi: Array, lattice: Lattice, width: float) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 from grainlaw.materials import InputError
 from grainlaw.materials.errors import nearest_name
+from grainlaw.mpm_core.space import AXISYMMETRIC, PLANE_STRAIN, Space
 from grainlaw.validation.grains.distance import Comparison, compare
 from grainlaw.validation.grains.observation import Observation, read_observation
 
@@ -26,13 +27,18 @@ class Ensemble:
 
     @property
     def aspect_ratio(self) -> float:
-        """H0 over the half width."""
+        """H0 over the half width, or the radius."""
         return self._of_description("initial_height") / self.half_width
 
     @property
     def half_width(self) -> float:
-        """Half width of the column [m]."""
+        """Half width of the column, or radius of the cylinder [m]."""
         return self._of_description("half_width")
+
+    @property
+    def space(self) -> Space:
+        """Plane strain, or axisymmetry for a cylinder."""
+        return self.runs[0].space
 
     @property
     def floor(self) -> str:
@@ -67,8 +73,15 @@ class ReferenceSet:
         return self.ensembles[case]
 
     def columns(self, floor: str) -> list[Ensemble]:
-        """The plain columns on a floor, from the squat to the slender."""
-        plain = [found for found in self.ensembles.values() if found.case.endswith(f"-{floor}")]
+        """The plain columns on a floor, in plane strain, from the squat to the slender."""
+        return self._on(floor, PLANE_STRAIN)
+
+    def cylinders(self, floor: str) -> list[Ensemble]:
+        """The cylinders on a floor, from the squat to the slender."""
+        return self._on(floor, AXISYMMETRIC)
+
+    def _on(self, floor: str, space: Space) -> list[Ensemble]:
+        plain = [one for one in self.ensembles.values() if one.case.endswith(f"-{floor}") and one.space is space]
         return sorted(plain, key=lambda found: found.aspect_ratio)
 
 

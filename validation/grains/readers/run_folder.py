@@ -63,7 +63,7 @@ def snapshots_of(frames: Sequence[RawFrame], description: RunDescription) -> Ite
             first = snapshot
         if snapshot.count != first.count:
             _check_lost(frame, snapshot, first)
-        if frame.contacts is not None:
+        if frame.contacts is not None and description.depth is not None and not description.is_round:
             contacts = read_contacts(frame.contacts)
             stress = stress_of_contacts(*contacts, description.depth, description.floor_level)
             snapshot = replace(snapshot, stress=stress)
