@@ -15,6 +15,7 @@ from grainlaw.validation.grains.coarse_graining import disc_lattice, kernel_of
 from grainlaw.validation.grains.distance import compare, profile_distance
 from grainlaw.validation.grains.observation import Observation, read_observation, write_observation
 from grainlaw.validation.grains.observe import observe_folder
+from grainlaw.validation.grains.reference_file import load_reference
 from grainlaw.validation.grains.snapshot import Array
 
 DENSITY, RADIUS, SPACING = 2450.0, 0.003, 0.0075
@@ -167,6 +168,26 @@ def test_a_cylinder_survives_its_file(observed, tmp_path):
     read = read_observation(path)
     assert read.space is observed.space
     assert compare(read, [observed]).distances[0].distance < 1e-6
+
+
+def test_an_experiment_with_a_cylinder_is_a_table_of_radii(tmp_path):
+    path = tmp_path / "experiment.csv"
+    rows = "t,x,h\n1,0.05,0.1\n1,0.15,0.1\n1,0.3,0.0\n"
+    path.write_text("# grain_diameter = 0.004\n# space = axisymmetric\n" + rows)
+    found = load_reference(path)
+    assert found.x[0] > 0.0
+    assert found.surface[0][0] == pytest.approx(0.1)
+    assert found.of("runout")[0] == pytest.approx(0.3 - 0.04 * 0.15, abs=1e-6)
+    # A disc and a ring below a straight slope from its inner to its outer radius.
+    inner, outer = 0.15, 0.3
+    slope = 0.1 / (outer - inner) * (outer * (outer**2 - inner**2) - 2.0 / 3.0 * (outer**3 - inner**3)) * np.pi
+    assert found.content(0) == pytest.approx(np.pi * inner**2 * 0.1 + slope, rel=2e-3)
+    path.write_text("# grain_diameter = 0.004\n# space = round\n" + rows)
+    with pytest.raises(InputError, match="space = round; allowed: plane_strain, axisymmetric"):
+        load_reference(path)
+    path.write_text("# grain_diameter = 0.004\n# space = axisymmetric\nt,x,h\n1,-0.1,0.1\n1,0.1,0.0\n")
+    with pytest.raises(InputError, match="distance from it"):
+        load_reference(path)
 
 
 def test_the_deck_has_a_round_wall_and_open_ends():

@@ -41,6 +41,11 @@ class Ensemble:
         return self.runs[0].space
 
     @property
+    def kind(self) -> str:
+        """What the case is, in a word."""
+        return "Cylinder" if self.space.hoop else "Column"
+
+    @property
     def floor(self) -> str:
         """Kind of the floor."""
         return str(self.runs[0].description.get("floor", ""))

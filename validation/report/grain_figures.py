@@ -18,9 +18,9 @@ BAND, MEAN = "#cccccc", "#555555"
 WIDTH = 7.2
 SHARES_OF_RUNOUT = (0.1, 0.25, 0.5, 0.75, 0.95)
 SERIES = (
-    ("runout", "runout $w$ [m]"),
-    ("height", "height $H$ [m]"),
-    ("kinetic_energy", "kinetic energy [J/m]"),
+    ("runout", "runout $w$"),
+    ("height", "height $H$"),
+    ("kinetic_energy", "kinetic energy"),
     ("interior_solid_fraction", r"interior $\phi$"),
 )
 STRESSES = (("stress_zz", r"$\sigma_{zz}$ [Pa]"), ("stress_xx", r"$\sigma_{xx}$ [Pa]"))
@@ -41,9 +41,10 @@ def profile_figure(ensemble: Ensemble, judgements: Sequence[Judgement]) -> str:
         axes.set_title(f"t = {time:.2f} s" + (", at rest" if time == times[-1] else ""), fontsize=9)
         _style(axes)
     reach = 1.15 * max(float(run.of("runout")[-1]) for run in ensemble.runs)
-    all_axes[0, 0].set_xlim(-reach, reach)
+    is_round = ensemble.space.hoop
+    all_axes[0, 0].set_xlim(0.0 if is_round else -reach, reach)
     for axes in all_axes[-1]:
-        axes.set_xlabel("x [m]", fontsize=9)
+        axes.set_xlabel("r [m]" if is_round else "x [m]", fontsize=9)
     for axes in all_axes[:, 0]:
         axes.set_ylabel("h [m]", fontsize=9)
     _legend(figure, all_axes[0, 0])
@@ -63,7 +64,7 @@ def series_figure(ensemble: Ensemble, judgements: Sequence[Judgement]) -> str:
         for color, judged, observation in _observed(judgements):
             if name in observation.series:
                 axes.plot(observation.times, observation.of(name), color=color, lw=1.1, label=judged.name)
-        axes.set_ylabel(label, fontsize=9)
+        axes.set_ylabel(f"{label} [{ensemble.runs[0].unit_of(name)}]", fontsize=9)
         _style(axes)
     for axes in all_axes[-1]:
         axes.set_xlabel("t [s]", fontsize=9)

@@ -33,7 +33,7 @@ def scatter_table(found: Sequence[Scatter]) -> Table:
 
 def verdict_table(ensemble: Ensemble, judgements: Sequence[Judgement]) -> Table:
     """Laws on one column of the reference set."""
-    title = f"Column a = {ensemble.aspect_ratio:g}, {ensemble.floor} floor"
+    title = f"{ensemble.kind} a = {ensemble.aspect_ratio:g}, {ensemble.floor} floor"
     return comparison_table(ensemble, judgements, title)
 
 
