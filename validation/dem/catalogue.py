@@ -14,7 +14,7 @@ from grainlaw.validation.dem.description import (
 )
 
 END_TIMES = {1: 1.0, 2: 1.2, 4: 1.5, 6: 1.8}
-CYLINDER_END_TIMES = {0.5: 0.9, 1: 1.1, 2: 1.3}
+CYLINDER_END_TIMES = {0.5: 0.75, 1: 1.1, 2: 1.1}
 FOUR, TWO = (1, 2, 3, 4), (1, 2)
 
 
