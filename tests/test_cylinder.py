@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -168,6 +169,10 @@ def test_a_cylinder_survives_its_file(observed, tmp_path):
     read = read_observation(path)
     assert read.space is observed.space
     assert compare(read, [observed]).distances[0].distance < 1e-6
+    with h5py.File(path, "r+") as file:
+        file.attrs["description"] = json.dumps({**observed.description, "space": "3d"})
+    with pytest.raises(InputError, match="its space is '3d'; allowed: plane_strain, axisymmetric"):
+        read_observation(path)
 
 
 def test_an_experiment_with_a_cylinder_is_a_table_of_radii(tmp_path):

@@ -153,10 +153,10 @@ def read_observation(path: Path) -> Observation:
                 snapshot_times=_read(file, "snapshots/time"),
                 snapshots={name: _read(file, f"snapshots/{name}") for name in file["snapshots"] if name != "time"},
             )
+            if (space := str(read.description.get("space") or PLANE_STRAIN.name)) not in SPACES:
+                raise InputError(f"{path}: its space is {space!r}; allowed: {', '.join(SPACES)}")
     except UNREADABLE as error:
         raise InputError(f"{path} cannot be read as an observation: {error}") from None
-    if (space := read.description.get("space") or PLANE_STRAIN.name) not in SPACES:
-        raise InputError(f"{path}: its space is {space!r}; allowed: {', '.join(SPACES)}")
     if read.surface.shape != (len(read.times), len(read.x)):
         raise InputError(
             f"{path}: surface has the shape {read.surface.shape}, expected {(len(read.times), len(read.x))}"
