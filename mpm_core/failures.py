@@ -14,8 +14,8 @@ LARGEST_INCREMENT = 0.5
 
 def failure_at(when: str, body: Body, point: int, reason: str) -> SimulationError:
     """The error that names a point of a body; `when` is the time and the step."""
-    x, y = body.positions[:, point]
-    where = f"point {body.ids[point]} of {body.name} ({body.law.name}) at ({x:.6g}, {y:.6g}) m"
+    place = ", ".join(f"{coordinate:.6g}" for coordinate in body.positions[:, point])
+    where = f"point {body.ids[point]} of {body.name} ({body.law.name}) at ({place}) m"
     return SimulationError(f"{when}: {where}: {reason}")
 
 

@@ -15,13 +15,13 @@ from grainlaw.mpm_core.grid.periodic import join_periodic
 from grainlaw.mpm_core.grid.volume_projection import LONGEST_UNPROJECTED, project_volumes
 from grainlaw.mpm_core.kernels.body_force import BodyForce, scatter_body_force
 from grainlaw.mpm_core.kernels.elastic_energy import elastic_energy
-from grainlaw.mpm_core.kernels.grid_update import clear_nodes, update_nodes
+from grainlaw.mpm_core.kernels.grid_update import clear_bulk, clear_nodes, update_nodes
 from grainlaw.mpm_core.kernels.held_nodes import hold_nodes
 from grainlaw.mpm_core.kernels.shape_functions import BASES
 from grainlaw.mpm_core.kernels.step_report import StepReport, step_report, together
 from grainlaw.mpm_core.kernels.volume_coupling import STEPS_PER_COUPLING
 from grainlaw.mpm_core.kernels.wall_clearance import WallClearance
-from grainlaw.mpm_core.kernels.walls import SIDES, Wall, WallKind, active_rows, hold_at_walls
+from grainlaw.mpm_core.kernels.walls import Wall, WallKind, active_layers, hold_at_walls
 from grainlaw.mpm_core.ledger import Ledger
 from grainlaw.mpm_core.output.fields import chosen_fields
 from grainlaw.mpm_core.parallel.sorting import LONGEST_DRIFT
@@ -56,8 +56,9 @@ class Simulation:
         use_threads(threads)
         self.basis = BASES[scene.transfer.basis]
         self.periodic_axes = _periodic_axes(scene)
+        self.space = scene.in_space
         size = (scene.grid.lower, scene.grid.cells, scene.grid.cell_size)
-        self.grid = Grid(*size, self.periodic_axes, scene.precision)
+        self.grid = Grid(self.space, *size, self.periodic_axes, scene.precision)
         self.fields = chosen_fields(scene)
         self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
         signals = self._signals_of_points()
@@ -77,14 +78,14 @@ class Simulation:
         self.drift_unprojected = 0.0
         self.active = no_active_nodes(self.grid)
         self.wall_clearance = self._wall_clearance()
-        kinetic = sum(0.5 * body.point_mass * float((body.velocity**2).sum()) for body in self.bodies)
+        kinetic = sum(0.5 * float((body.masses * body.speed**2).sum()) for body in self.bodies)
         self.ledger = Ledger(kinetic, kinetic, initial_elastic)
         self.projects_volumes = scene.transfer.volume_projection and any(body.is_loose for body in self.bodies)
         self.ways_bounded = 0
         self.sleep = self._sleep()
         # No signal is slower than a fall through one cell, for material without stiffness.
         self.free_fall_speed = math.sqrt(math.hypot(*scene.gravity) * self.grid.cell_size)
-        self.signal_bounds = [signal_bounds(body.law, body.parameters, body.initial_density) for body in self.bodies]
+        self.signal_bounds = [signal_bounds(body) for body in self.bodies]
         self._take_signals(signals)
         first = self.scene.time.step or self.adaptive_step()
         if not first * MOST_STEPS > scene.time.end:
@@ -103,7 +104,7 @@ class Simulation:
         signals = []
         for body in self.bodies:
             with numbers_of(body.law.name):
-                signals.append((body.largest_signal_speed(), float(np.hypot(*body.velocity).max())))
+                signals.append((body.largest_signal_speed(), float(body.speed.max())))
         return signals
 
     def _take_signals(self, signals: list[tuple[float, float]]) -> None:
@@ -119,8 +120,8 @@ class Simulation:
         couples_volumes = self.steps % STEPS_PER_COUPLING == 0
         self._project_volumes_if_drifted()
         self._sort_if_drifted()
-        self._clear_nodes()
-        self._p2g()
+        self._clear_nodes(couples_volumes)
+        self._p2g(couples_volumes)
         self._update_grid(dt, couples_volumes)
         self._g2p(dt, couples_volumes)
         self._update_stress(dt, couples_volumes)
@@ -131,19 +132,21 @@ class Simulation:
         if self.sleep is not None:
             self._let_sleep(self.sleep)
 
-    def _p2g(self) -> None:
+    def _p2g(self, couples_volumes: bool = False) -> None:
         for body in self.bodies:
-            body.p2g(self.grid, self.threads)
+            body.p2g(self.grid, self.threads, couples_volumes)
             if self.body_force is not None:
                 scatter_body_force(body, self.body_force(body, self.time), self.grid, self.basis)
         for axis in self.periodic_axes:
-            join_periodic(self.grid, axis)
+            join_periodic(self.grid, self.grid.nodes, axis)
+            if couples_volumes:
+                join_periodic(self.grid, self.grid.bulk, axis)
 
     def _update_grid(self, dt: float, couples_volumes: bool) -> None:
         """Solve the momentum equation on the nodes, then walls, held nodes and sleepers have their say."""
         kick = 0.5 * (self.last_step + dt)
         update_nodes(self.grid, self.active, self.scene.gravity, kick, couples_volumes)
-        taken = hold_at_walls(self.grid, self.wall_clearance.rows, self.wall_clearance.clearances(), dt)
+        taken = hold_at_walls(self.grid, self.wall_clearance.layers, self.wall_clearance.clearances(), dt)
         self.ledger.wall_work += taken.work
         self.ledger.wall_friction += taken.friction
         hold_nodes(self.grid, self.held_nodes)
@@ -220,19 +223,21 @@ class Simulation:
         return max(self.free_fall_speed, *speeds)
 
     def elastic_energy(self) -> float:
-        """The present elastic energy of all bodies per width [J/m]; NaN where a law does not state its energy."""
+        """The present elastic energy of all bodies [J and the space's amount]; NaN if a law does not state it."""
         return sum(elastic_energy(body) for body in self.bodies)
 
     def _flip_fraction(self, dt: float) -> float:
         """The share of the unresolved velocity that outlives a step."""
         return math.exp(-dt / self.scene.blend_time) if self.scene.blend_time > 0.0 else 0.0
 
-    def _clear_nodes(self) -> None:
+    def _clear_nodes(self, couples_volumes: bool) -> None:
         """Leave on the nodes only what sleeping points bring."""
         if self.sleep is not None and self.sleep.has_sleepers:
             self.sleep.lay_on_grid(self.active)
         else:
             clear_nodes(self.grid.nodes, self.grid, self.active)
+            if couples_volumes:
+                clear_bulk(self.grid.bulk, self.grid, self.active)
 
     def _sort_if_drifted(self) -> None:
         if self.drift > LONGEST_DRIFT * self.grid.cell_size:
@@ -286,12 +291,13 @@ class Simulation:
     def keep_to(self, active: ActiveNodes) -> None:
         """Work on these nodes until the next sort, and leave zeros everywhere else."""
         clear_nodes(self.grid.nodes, self.grid, self.active)
+        clear_bulk(self.grid.bulk, self.grid, self.active)
         self.active = active
         self.wall_clearance = self._wall_clearance()
 
     def _wall_clearance(self) -> WallClearance:
-        rows = active_rows(self.walls, self.grid, self.active)
-        return WallClearance(rows, self.bodies, self.grid, self.basis, self.periodic_axes, self.threads)
+        layers = active_layers(self.walls, self.grid, self.active, self.periodic_axes)
+        return WallClearance(layers, self.bodies, self.grid, self.basis, self.periodic_axes, self.threads)
 
     def _take_reports(self, dt: float) -> None:
         reports = [step_report(body.transfer_reports, body.stress_reports) for body in self.bodies]
@@ -309,30 +315,30 @@ class Simulation:
             for body, report in zip(self.bodies, reports, strict=True)
         ]
         self.signal_speed = self._signal_speed(signals, [report.diffusivity for report in reports])
-        gravity_x, gravity_y = self.scene.gravity
         self.ledger.count(
             kinetic=whole.kinetic,
-            risen=-dt * (gravity_x * whole.momentum_x + gravity_y * whole.momentum_y),
+            risen=-dt * sum(g * momentum for g, momentum in zip(self.scene.gravity, whole.momentum, strict=True)),
             worked=whole.internal_work,
         )
 
     def _refuse_lost_points(self, report: StepReport) -> None:
-        limits = ((report.lowest_x, report.highest_x), (report.lowest_y, report.highest_y))
-        for axis, (lowest, highest) in enumerate(limits):
+        for axis, (lowest, highest) in enumerate(zip(report.lowest, report.highest, strict=True)):
             is_lost = lowest < self.grid.lower[axis] or highest > self.grid.upper[axis]
             if is_lost and axis not in self.periodic_axes:
                 raise failure_outside(self._when, self.bodies, axis, self.grid.lower[axis], self.grid.upper[axis])
 
 
 def _walls(scene: Scene) -> list[Wall]:
-    sections = [(side, getattr(scene.boundary, side)) for side in SIDES]
-    return [
-        Wall(side, WallKind[section.kind.upper()], section.coefficient, section.velocity)
-        for side, section in sections
-        if section.kind != "periodic"
-    ]
+    walls = []
+    for axis, sides in enumerate(scene.in_space.sides):
+        for side in sides:
+            section = scene.boundary.of(side)
+            if section.kind != "periodic":
+                kind, is_lower = WallKind[section.kind.upper()], side == sides[0]
+                walls.append(Wall(axis, is_lower, kind, section.coefficient, scene.wall_velocity(side)))
+    return walls
 
 
 def _periodic_axes(scene: Scene) -> list[int]:
-    kinds = (scene.boundary.left.kind, scene.boundary.bottom.kind)
+    kinds = (scene.boundary.of(lower).kind for lower, _ in scene.in_space.sides)
     return [axis for axis, kind in enumerate(kinds) if kind == "periodic"]

@@ -13,7 +13,7 @@ import tomli_w
 
 from grainlaw.materials import registry
 from grainlaw.mpm_core import Scene, Simulation
-from grainlaw.mpm_core.grid.grid import COMPONENTS, MASS, OLD_VX, OLD_VY
+from grainlaw.mpm_core.grid.grid import COMPONENTS
 
 ELASTIC = {"bulk_modulus": 1e4, "poisson_ratio": 0.2}
 MU_I_LC = {
@@ -98,16 +98,17 @@ def write_scene(path, content, changes=None):
 
 def set_affine_velocity(body, velocity, gradient):
     """Give all points the velocity v + L x and the gradient L."""
-    (vx, vy), gradient = velocity, np.asarray(gradient)
-    body.velocity = np.array([[vx], [vy]]) + gradient @ body.positions
+    gradient = np.asarray(gradient)
+    body.velocity = np.reshape(velocity, (-1, 1)) + gradient @ body.positions
     body.velocity_gradient = body.affine = gradient[:, :, None]
 
 
 def node_mass_and_momentum(simulation):
-    """Mass [kg/m] of each node and momentum [kg/s] that the points brought, shapes (nx, ny) and (2, nx, ny)."""
-    nodes = simulation.grid.nodes.reshape(*simulation.grid.shape, COMPONENTS)
-    mass = nodes[..., MASS]
-    return mass, np.where(mass > 0.0, mass * np.stack([nodes[..., OLD_VX], nodes[..., OLD_VY]]), 0.0)
+    """Mass [kg/m] of each node and momentum [kg/s] that the points brought, shapes of the grid, the axes before it."""
+    grid = simulation.grid
+    nodes = np.moveaxis(grid.nodes.reshape(*grid.shape, COMPONENTS), -1, 0)
+    mass, old = nodes[grid.components.mass], grid.components.force
+    return mass, np.where(mass > 0.0, mass * nodes[old : old + grid.space.axes], 0.0)
 
 
 def momentum(simulation):

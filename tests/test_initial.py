@@ -8,10 +8,15 @@ from scenes_for_tests import BLOCK, CAM_CLAY, COLUMN, ELASTIC, MU_I_LC, changed,
 
 from grainlaw.materials import InputError
 from grainlaw.mpm_core import Scene
-from grainlaw.mpm_core.layout import DENSITY, LXX, LYY, SXX, SXY, SYY, SZZ, X, Y
+from grainlaw.mpm_core.layout import layout_of
 from grainlaw.mpm_core.scene.initial_state import build_bodies
+from grainlaw.mpm_core.space import PLANE_STRAIN
 
 WEIGHT = 1500.0 * 9.8
+ROWS = layout_of(PLANE_STRAIN)
+X, Y, DENSITY = 0, 1, ROWS.density
+SXX, SYY, SZZ, SXY = range(ROWS.stress, ROWS.stress + 4)
+LXX, LYY = ROWS.gradient, ROWS.gradient + 3
 
 
 def column(**changes):

@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from grainlaw.mpm_core.output.observables import pile_shape
+from grainlaw.mpm_core.space import PLANE_STRAIN
 
 
 def body(x, y, point_mass=2.0, density=1000.0):
     places = np.array([x, y], dtype=float)
-    return SimpleNamespace(positions=places, count=places.shape[1], point_mass=point_mass, initial_density=density)
+    masses = np.full(places.shape[1], point_mass)
+    return SimpleNamespace(positions=places, masses=masses, initial_density=density, space=PLANE_STRAIN)
 
 
 def evenly(count, width=1.0, height=0.5, **keywords):

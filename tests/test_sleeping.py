@@ -8,7 +8,7 @@ from scenes_for_tests import BLOCK, CAM_CLAY, COLUMN, changed, simulation
 
 from grainlaw.materials import InputError
 from grainlaw.mpm_core import Scene, run
-from grainlaw.mpm_core.grid.grid import COMPONENTS, MASS, PX, PY
+from grainlaw.mpm_core.grid.grid import COMPONENTS, NODE_OF
 from grainlaw.mpm_core.output.checkpoint import Clock, read_checkpoint, write_checkpoint
 from grainlaw.mpm_core.output.history import read_history
 from grainlaw.mpm_core.output.observables import pile_shape
@@ -102,8 +102,8 @@ def test_no_point_is_lost_and_the_mass_of_sleepers_is_on_their_nodes(piles):
     (body,) = asleep.bodies
     assert sorted(body.ids) == list(range(body.count))
     nodes = asleep.sleep.nodes.reshape(-1, COMPONENTS)
-    assert nodes[:, MASS].sum() == pytest.approx((body.count - body.awake) * body.point_mass, rel=1e-12)
-    assert not nodes[:, [PX, PY]].any()
+    assert nodes[:, NODE_OF[2].mass].sum() == pytest.approx((body.count - body.awake) * body.point_mass, rel=1e-12)
+    assert not nodes[:, NODE_OF[2].momentum : NODE_OF[2].momentum + 2].any()
 
 
 def test_what_something_falls_on_wakes():

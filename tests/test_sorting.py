@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from grainlaw.mpm_core.kernels.shape_functions import BASES
-from grainlaw.mpm_core.layout import FIRST_STATE, X, Y
 from grainlaw.mpm_core.parallel.blocks import EQUAL_SHARES
 from grainlaw.mpm_core.parallel.sorting import sort_by_stencil
 
@@ -26,9 +25,7 @@ def points_of(heights):
     """Two by two points in each cell, in no order."""
     cells = [(i, j) for i, height in enumerate(heights) for j in range(height)]
     places = [(i + a, j + b) for i, j in cells for a in (0.25, 0.75) for b in (0.25, 0.75)]
-    points = np.zeros((FIRST_STATE, len(places)))
-    points[[X, Y]] = CELL * np.random.default_rng(1).permutation(places).T
-    return points
+    return CELL * np.random.default_rng(1).permutation(places).T
 
 
 def stripes_of(heights, basis):
@@ -36,7 +33,7 @@ def stripes_of(heights, basis):
     points = points_of(heights)
     order, starts = sort_by_stencil(points, (0.0, 0.0), CELL, basis)
     assert sorted(order) == list(range(points.shape[1]))
-    first_nodes = np.floor(points[X, order] / CELL - basis.offset).astype(int)
+    first_nodes = np.floor(points[0, order] / CELL - basis.offset).astype(int)
     return np.split(first_nodes, starts[1:-1]), starts
 
 

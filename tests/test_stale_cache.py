@@ -143,10 +143,11 @@ INVARIANT = """
 import numpy as np
 from grainlaw.materials import equivalent_shear_stress
 from grainlaw.mpm_core.kernels.invariants import over_stress
-from grainlaw.mpm_core.layout import SXY
+from grainlaw.mpm_core.layout import layout_of
+from grainlaw.mpm_core.space import PLANE_STRAIN
 points, values = np.zeros((40, 1)), np.empty(1)
-points[SXY] = 1.0
-over_stress(equivalent_shear_stress)(points, values)
+points[layout_of(PLANE_STRAIN).stress + 3] = 1.0
+over_stress(PLANE_STRAIN, equivalent_shear_stress)(points, values)
 print(values[0])
 """
 

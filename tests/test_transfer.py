@@ -9,11 +9,14 @@ from scenes_for_tests import BLOCK, COLUMN, momentum, node_mass_and_momentum, se
 
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.mpm_core.kernels.shape_functions import BASES
-from grainlaw.mpm_core.layout import LYY, VX, VY, X, Y
+from grainlaw.mpm_core.layout import layout_of
+from grainlaw.mpm_core.space import PLANE_STRAIN
 
 BASIS_NAMES = list(BASES)
 # A hair above no step at all: the transfers happen, the stress and the positions stay.
 INSTANT = 1e-12
+# The rows of velocity, L and A.
+MOTION = slice(layout_of(PLANE_STRAIN).velocity, layout_of(PLANE_STRAIN).stress)
 GRADIENT = [[0.3, -0.7], [1.1, -0.3]]
 FILLING = {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [1.0, 0.8]}
 
@@ -48,11 +51,11 @@ def test_an_affine_velocity_field_survives_the_way_to_the_grid_and_back(basis, s
     case.walls.clear()
     (body,) = case.bodies
     set_affine_velocity(body, (0.4, -0.2), GRADIENT)
-    before = body.points[VX : LYY + 1].copy()
+    before = body.points[MOTION].copy()
     ids = body.ids.copy()
     case.step(INSTANT)
     order = np.argsort(ids)[body.ids]
-    np.testing.assert_allclose(body.points[VX : LYY + 1], before[:, order], atol=round_off)
+    np.testing.assert_allclose(body.points[MOTION], before[:, order], atol=round_off)
 
 
 @pytest.mark.parametrize("basis", ["quadratic", "cubic"])
@@ -67,7 +70,7 @@ def test_a_spinning_stressed_disc_keeps_momentum_and_angular_momentum(basis):
     moment = {"quadratic": 1 / 4, "cubic": 1 / 3}[basis] * case.grid.cell_size**2
 
     def angular_momentum():
-        x, y, vx, vy = body.points[[X, Y, VX, VY]]
+        x, y, vx, vy = [*body.positions, *body.velocity]
         own = moment * (body.velocity_gradient[1, 0] - body.velocity_gradient[0, 1])
         return body.point_mass * float(np.sum(x * vy - y * vx + own))
 
@@ -79,11 +82,11 @@ def test_a_spinning_stressed_disc_keeps_momentum_and_angular_momentum(basis):
     assert abs(case.ledger.internal_work) > 0.0
 
 
-def final_state(threads, precision):
+def final_state(threads, precision, steps=400):
     changes = {"grid.cell_size": 0.0125, "precision": precision, "body.0.velocity": [0.8, 0.0]}
     case = simulation(COLUMN, changes, threads)
     width = np.ptp(case.bodies[0].positions[0])
-    for _ in range(400):
+    for _ in range(steps):
         case.step(0.5 * case.critical_time_step())
     return case, width
 
@@ -102,12 +105,13 @@ def test_two_threads_give_the_bits_of_one(precision):
 
 
 def test_single_precision_halves_what_is_kept_and_hardly_changes_the_result():
-    double, single = (final_state(1, precision)[0] for precision in PRECISIONS)
+    # As long as the column falls: on the ground two runs part as two of different steps do.
+    double, single = (final_state(1, precision, steps=200)[0] for precision in PRECISIONS)
     (exact,), (rounded,) = double.bodies, single.bodies
     places = [body.positions[:, np.argsort(body.ids)] for body in (exact, rounded)]
     moved = np.abs(places[1] - places[0]) / double.grid.cell_size
     assert moved.max() > 1e-9
-    assert np.quantile(moved, 0.99) < 1e-2
+    assert np.quantile(moved, 0.99) < 1e-4
     assert single.grid.nodes.nbytes == double.grid.nodes.nbytes // 2
     assert rounded.points.itemsize == exact.points.itemsize // 2
 

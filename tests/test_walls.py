@@ -7,7 +7,6 @@ import pytest
 from scenes_for_tests import BLOCK, COLUMN, momentum, simulation
 
 from grainlaw.materials import InputError
-from grainlaw.mpm_core.grid.grid import MASS
 from grainlaw.mpm_core.scene.model import FEWEST_PERIODIC_CELLS
 
 G = 9.81
@@ -108,7 +107,7 @@ def test_all_copies_of_a_node_across_periodic_sides_are_the_same(cells):
     for copy in range(cells, case.grid.shape[0]):
         np.testing.assert_array_equal(nodes[copy], nodes[copy - cells])
         assert clearances[copy] == clearances[copy - cells]
-    assert nodes[:cells, :, MASS].sum() == pytest.approx(body.count * body.point_mass, rel=1e-12)
+    assert nodes[:cells, :, case.grid.components.mass].sum() == pytest.approx(body.count * body.point_mass, rel=1e-12)
 
 
 @pytest.mark.parametrize("threads", [1, 2])

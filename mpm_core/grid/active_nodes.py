@@ -1,4 +1,4 @@
-"""The active nodes, those that points awake can touch until they are sorted again: a range of rows per column of nodes.
+"""The active nodes, those that points awake can touch until they are sorted again: a range of each column of nodes.
 
 Work on the grid follows these nodes, so that its cost does not depend on the domain, nor on the air above a pile. All
 other nodes hold zeros.
@@ -15,47 +15,61 @@ from grainlaw.materials.compilation import named
 from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.kernels.shape_functions import Basis, first_node
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
-from grainlaw.mpm_core.layout import X, Y
 
 # Cells by which a point may drift between two sorts, rounded up (`sorting.LONGEST_DRIFT`).
 DRIFT = 1
 
 
-class ActiveNodes(NamedTuple):
-    """The active nodes, all limits inclusive; where there are none, the last lies before the first.
+class ActiveColumns(NamedTuple):
+    """The active nodes column by column, as passes over the grid take them; all limits are inclusive.
 
-    first_column, last_column  of the columns of nodes that have any
-    first_row, last_row        of the rows that have any
-    first_rows, last_rows      in each column of the grid
+    first_column, last_column  of the columns of nodes that have any; without any, the last lies before the first
+    first_rows, last_rows      in each column of the grid, along the last axis
     """
 
     first_column: int
     last_column: int
-    first_row: int
-    last_row: int
     first_rows: NDArray[np.int64]
     last_rows: NDArray[np.int64]
+
+
+class ActiveNodes(NamedTuple):
+    """The active nodes, all limits inclusive; where there are none, the last lies before the first.
+
+    first, last  along each axis, of the nodes that are active for any numbers along the others
+    columns      column by column
+    """
+
+    first: tuple[int, ...]
+    last: tuple[int, ...]
+    columns: ActiveColumns
 
     @property
     def nodes(self) -> int:
         """Number of active nodes."""
-        return int(np.maximum(0, self.last_rows - self.first_rows + 1).sum())
-
-    def along(self, axis: int) -> tuple[int, int]:
-        """First and last of the nodes along x (0) or y (1)."""
-        return (self.first_column, self.last_column) if axis == 0 else (self.first_row, self.last_row)
+        return int(np.maximum(0, self.columns.last_rows - self.columns.first_rows + 1).sum())
 
 
 def no_active_nodes(grid: Grid) -> ActiveNodes:
     """The active nodes of no points."""
-    return active_between(np.full(grid.shape[0], grid.shape[1]), np.full(grid.shape[0], -1))
+    return active_between(grid, *_nothing(grid))
 
 
-def active_between(first_rows: NDArray[np.int64], last_rows: NDArray[np.int64]) -> ActiveNodes:
+def _nothing(grid: Grid) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    return np.full(grid.columns, grid.shape[-1]), np.full(grid.columns, -1)
+
+
+def active_between(grid: Grid, first_rows: NDArray[np.int64], last_rows: NDArray[np.int64]) -> ActiveNodes:
     """The active nodes with these first and last rows in each column of the grid."""
-    columns = np.flatnonzero(last_rows >= first_rows)
-    first, last = (int(columns[0]), int(columns[-1])) if len(columns) > 0 else (0, -1)
-    return ActiveNodes(first, last, int(first_rows.min()), int(last_rows.max()), first_rows, last_rows)
+    occupied = np.flatnonzero(last_rows >= first_rows)
+    along = np.unravel_index(occupied if len(occupied) > 0 else [0], grid.shape[:-1])
+    if len(occupied) == 0:
+        nowhere = (0,) * grid.space.axes, (-1,) * grid.space.axes
+        return ActiveNodes(*nowhere, ActiveColumns(0, -1, first_rows, last_rows))
+    first = *(int(numbers.min()) for numbers in along), int(first_rows.min())
+    last = *(int(numbers.max()) for numbers in along), int(last_rows.max())
+    columns = ActiveColumns(int(occupied[0]), int(occupied[-1]), first_rows, last_rows)
+    return ActiveNodes(first, last, columns)
 
 
 def find_active_nodes(
@@ -65,29 +79,46 @@ def find_active_nodes(
 
     A group is an array of points like `Body.points`.
     """
-    *_, first, last = no_active_nodes(grid)
+    first, last = _nothing(grid)
     for points in groups:
-        _extend(points[X], points[Y], grid.origin, grid.cell_size, basis.offset, basis.width, first, last)
-    np.clip(first, 0, grid.shape[1], out=first)
-    np.clip(last, -1, grid.shape[1] - 1, out=last)
-    if 0 in periodic_axes:
-        first[:], last[:] = first.min(), last.max()
-    if 1 in periodic_axes:
-        occupied = last >= first
-        first[occupied], last[occupied] = 0, grid.shape[1] - 1
-    return active_between(first, last)
+        _first_nodes(points[: grid.space.axes], grid.origin, grid.cell_size, basis.offset, grid.shape, first, last)
+    is_occupied = last >= 0
+    first[is_occupied] -= DRIFT
+    last[is_occupied] += basis.width - 1 + DRIFT
+    columns = grid.shape[:-1]
+    first, last = first.reshape(columns), last.reshape(columns)
+    for axis in range(len(columns)):
+        first, last = _spread(first, axis, basis.width, np.minimum), _spread(last, axis, basis.width, np.maximum)
+        if axis in periodic_axes:
+            first[:] = first.min(axis=axis, keepdims=True)
+            last[:] = last.max(axis=axis, keepdims=True)
+    first, last = np.clip(first.ravel(), 0, grid.shape[-1]), np.clip(last.ravel(), -1, grid.shape[-1] - 1)
+    if grid.space.up in periodic_axes:
+        is_occupied = last >= first
+        first[is_occupied], last[is_occupied] = 0, grid.shape[-1] - 1
+    return active_between(grid, first, last)
+
+
+def _spread(rows: NDArray[np.int64], axis: int, width: int, extreme: np.ufunc) -> NDArray[np.int64]:
+    """The extreme of the columns whose stencils, with the drift, reach a column along an axis."""
+    spread = rows.copy()
+    source, target = np.moveaxis(rows, axis, 0), np.moveaxis(spread, axis, 0)
+    for way in range(-DRIFT, width + DRIFT):
+        if way > 0:
+            extreme(target[way:], source[:-way], out=target[way:])
+        elif way < 0:
+            extreme(target[:way], source[-way:], out=target[:way])
+    return spread
 
 
 @njit(cache=True)
 @named(CORE_MARK)
-def _extend(x, y, origin, cell_size, offset, width, first_rows, last_rows):  # type: ignore[no-untyped-def]
-    columns = len(first_rows)
-    lowest, highest = np.full(columns, np.int64(2**31)), np.full(columns, np.int64(-1))
-    for p in range(len(x)):
-        i, j = first_node(x[p], y[p], origin, cell_size, offset)
-        lowest[i], highest[i] = min(lowest[i], j), max(highest[i], j)
-    for i in range(columns):
-        if highest[i] >= 0:
-            for column in range(max(0, i - DRIFT), min(columns, i + width + DRIFT)):
-                first_rows[column] = min(first_rows[column], lowest[i] - DRIFT)
-                last_rows[column] = max(last_rows[column], highest[i] + width - 1 + DRIFT)
+def _first_nodes(places, origin, cell_size, offset, shape, lowest, highest):  # type: ignore[no-untyped-def]
+    """Lower and raise the first node of the stencils in each column to those of the points."""
+    up = len(origin) - 1
+    for p in range(places.shape[1]):
+        column = 0
+        for axis in range(up):
+            column = column * shape[axis] + first_node(places[axis, p], origin[axis], cell_size, offset)
+        row = first_node(places[up, p], origin[up], cell_size, offset)
+        lowest[column], highest[column] = min(lowest[column], row), max(highest[column], row)

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
+from numba.extending import register_jitable
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
@@ -15,6 +16,7 @@ from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.kernels.positions import coordinate_of, position_access
 from grainlaw.mpm_core.kernels.shape_functions import quadratic_weights
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
+from grainlaw.mpm_core.space import Space
 
 # A cell with more than this share of its room is material, one with less is air.
 FULL = 0.5
@@ -33,14 +35,17 @@ class CellWindow(NamedTuple):
     periodic  axes along which the window is the whole domain and closed
     """
 
-    first: tuple[int, int]
-    shape: tuple[int, int]
-    at_walls: tuple[tuple[bool, bool], tuple[bool, bool]]
+    first: tuple[int, ...]
+    shape: tuple[int, ...]
+    at_walls: tuple[tuple[bool, bool], ...]
     periodic: tuple[int, ...]
 
 
 class WallGap(NamedTuple):
-    """Where material is off a wall: the lower or the upper one across an axis, for each cell of the domain along it."""
+    """Where material is off a wall, the lower or the upper one across an axis.
+
+    For each cell of the domain along the other axes.
+    """
 
     axis: int
     is_lower: bool
@@ -64,7 +69,7 @@ class CellVolumes(NamedTuple):
     def is_material(self) -> NDArray[np.bool_]:
         """Cells that are no air; never the padding."""
         found = self.fill > FULL
-        for axis in (0, 1):
+        for axis in range(found.ndim):
             np.moveaxis(found, axis, 0)[[0, -1]] = False
         return found
 
@@ -75,9 +80,10 @@ class CellVolumes(NamedTuple):
 
     def is_interior(self) -> NDArray[np.bool_]:
         """Cells of material with no air in `SURFACE_CELLS` around them; a wall is no air where material touches it."""
-        inside = self.is_material[1:-1, 1:-1]
-        for axis in (0, 1):
-            widths = [(SURFACE_CELLS, SURFACE_CELLS) if k == axis else (0, 0) for k in (0, 1)]
+        axes = self.fill.ndim
+        inside = self.is_material[(slice(1, -1),) * axes]
+        for axis in range(axes):
+            widths = [(SURFACE_CELLS, SURFACE_CELLS) if k == axis else (0, 0) for k in range(axes)]
             continued = np.pad(inside, widths, mode="wrap" if axis in self.window.periodic else "edge")
             self._open_gaps(continued, axis)
             inside = np.asarray(sliding_window_view(continued, 2 * SURFACE_CELLS + 1, axis=axis).all(axis=-1))
@@ -86,21 +92,23 @@ class CellVolumes(NamedTuple):
     def _open_gaps(self, continued: NDArray[np.bool_], axis: int) -> None:
         """Put air beyond the walls across an axis that material is off; the axes before it have their final cells."""
         layers = np.moveaxis(continued, axis, 0)
-        along = 1 - axis
-        first, cells = self.window.first[along] + 1, self.window.shape[along] - 2
+        along = [other for other in range(continued.ndim) if other != axis]
+        cells = tuple(
+            slice(self.window.first[other] + 1, self.window.first[other] + self.window.shape[other] - 1)
+            for other in along
+        )
         for gap in self.gaps:
             end = 0 if gap.is_lower else 1
             if gap.axis == axis and self.window.at_walls[axis][end]:
                 beyond = layers[:SURFACE_CELLS] if gap.is_lower else layers[-SURFACE_CELLS:]
-                beyond[:, gap.is_open[first : first + cells]] = False
+                beyond[:, gap.is_open[cells]] = False
 
 
 def find_window(bodies: Sequence[Body], grid: Grid, periodic_axes: Sequence[int]) -> CellWindow:
     """The window around all points, with a margin of air where there is room for it."""
     first, last, at_walls = [], [], []
-    for axis in (0, 1):
-        cells = grid.cells[axis]
-        ends = [coordinate_of(body.points, axis) for body in bodies]
+    for axis, cells in enumerate(grid.cells):
+        ends = [coordinate_of(body.points, axis, body.space) for body in bodies]
         lowest = int((min(float(end.min()) for end in ends) - grid.lower[axis]) / grid.cell_size) - MARGIN
         highest = int((max(float(end.max()) for end in ends) - grid.lower[axis]) / grid.cell_size) + MARGIN
         closed = axis in periodic_axes
@@ -108,39 +116,38 @@ def find_window(bodies: Sequence[Body], grid: Grid, periodic_axes: Sequence[int]
         first.append(low - 1)
         last.append(high + 1)
         at_walls.append((low == 0 and not closed, high == cells - 1 and not closed))
-    shape = (last[0] - first[0] + 1, last[1] - first[1] + 1)
-    return CellWindow((first[0], first[1]), shape, (at_walls[0], at_walls[1]), tuple(periodic_axes))
+    shape = tuple(end - start + 1 for start, end in zip(first, last, strict=True))
+    return CellWindow(tuple(first), shape, tuple(at_walls), tuple(periodic_axes))
 
 
 def cell_volumes(
     bodies: Sequence[Body], grid: Grid, periodic_axes: Sequence[int], gaps: Sequence[WallGap] = ()
 ) -> CellVolumes:
-    """Deposit the volumes of all points to the middles of cells, with quadratic weights, mirrored at walls."""
+    """Deposit the volumes of all points to the middles of cells, with quadratic weights, mirrored at walls.
+
+    In axisymmetry a point stands for its area, volume over radius, in the room that is the area of the cell.
+    """
     window = find_window(bodies, grid, periodic_axes)
     fill, held = np.zeros(window.shape), np.zeros(window.shape)
-    lower = corner(window, grid)
+    lower, per_room = corner(window, grid), grid.cell_size**-grid.space.axes
     for body in bodies:
-        deposit = _make_deposit(body.precision)
+        deposit = _make_deposit(body.space, body.precision)
         loose = body.awake if body.is_loose else 0
-        scale = body.point_mass / grid.cell_size**2
-        deposit(body.storage, 0, loose, scale, lower, grid.cell_size, fill)
-        deposit(body.storage, loose, body.count, scale, lower, grid.cell_size, held)
+        deposit(body.storage, 0, loose, body.point_mass, per_room, lower, grid.cell_size, fill)
+        deposit(body.storage, loose, body.count, body.point_mass, per_room, lower, grid.cell_size, held)
     fold_padding(fill, window)
     fold_padding(held, window)
     return CellVolumes(window, fill + held, held, gaps)
 
 
-def corner(window: CellWindow, grid: Grid) -> tuple[float, float]:
+def corner(window: CellWindow, grid: Grid) -> tuple[float, ...]:
     """The lower corner of the first cell of the window, padding included [m]."""
-    return (
-        grid.lower[0] + window.first[0] * grid.cell_size,
-        grid.lower[1] + window.first[1] * grid.cell_size,
-    )
+    return tuple(low + first * grid.cell_size for low, first in zip(grid.lower, window.first, strict=True))
 
 
 def fold_padding(values: NDArray[np.float64], window: CellWindow) -> None:
     """Give what lies in the padding to the cells it belongs to: beyond a wall its mirror image, or the other end."""
-    for axis in (0, 1):
+    for axis in range(values.ndim):
         layers = np.moveaxis(values, axis, 0)
         lower, upper = (-2, 1) if axis in window.periodic else (1, -2)
         layers[lower] += layers[0]
@@ -154,7 +161,7 @@ def filled_padding(values: NDArray[Any], window: CellWindow) -> NDArray[Any]:
     Elsewhere the padding is air, and stays zero.
     """
     filled = values.copy()
-    for axis in (0, 1):
+    for axis in range(values.ndim):
         layers = np.moveaxis(filled, axis, 0)
         if axis in window.periodic:
             layers[0], layers[-1] = layers[-2], layers[1]
@@ -166,24 +173,65 @@ def filled_padding(values: NDArray[Any], window: CellWindow) -> NDArray[Any]:
 
 
 @cache
-def _make_deposit(precision: str) -> Callable[..., Any]:
-    access = position_access(precision)
-    along, density = access.along, access.density
+def _make_deposit(space: Space, precision: str) -> Callable[..., Any]:
+    access, mark = position_access(space, precision), f"{space.name}_{precision}_{CORE_MARK}"
+    density, mass_of, radius_of, hoop = access.density, access.mass, access.along, space.hoop
+    make_add_volume = {2: _make_add_to_squares, 3: _make_add_to_cubes}[space.axes]
+    add_volume = make_add_volume(_make_cell_and_weights(access.along, mark), mark)
 
     @njit(error_model="numpy", cache=True)
-    @named(f"{precision}_{CORE_MARK}")
-    def deposit(storage, begin, end, scale, lower, cell_size, fill):  # type: ignore[no-untyped-def]
-        """Add the volumes of points, times a scale over their mass, in the order in which they lie."""
+    @named(mark)
+    def deposit(storage, begin, end, point_mass, per_room, lower, cell_size, fill):  # type: ignore[no-untyped-def]
+        """Add the volumes of points, over the room of a cell, in the order in which they lie."""
         inverse = 1.0 / cell_size
         for p in range(begin, end):
-            volume = scale / density(storage, p)
-            x, y = (along(storage, 0, p) - lower[0]) * inverse, (along(storage, 1, p) - lower[1]) * inverse
-            # A point on the upper wall belongs to the last cell.
-            i, j = min(int(x), fill.shape[0] - 2), min(int(y), fill.shape[1] - 2)
-            # From the middle of the cell before.
-            wx, wy = quadratic_weights(x - i + 0.5), quadratic_weights(y - j + 0.5)
-            for a in range(3):
-                for b in range(3):
-                    fill[i + a - 1, j + b - 1] += volume * wx[a] * wy[b]
+            volume = mass_of(storage, p, point_mass) * per_room / density(storage, p)
+            if hoop:
+                volume /= radius_of(storage, 0, p)
+            add_volume(storage, p, volume, lower, inverse, fill)
 
     return deposit
+
+
+def _make_cell_and_weights(along: Callable[..., Any], mark: str) -> Callable[..., Any]:
+    """A function that gives the cell that a point is in along an axis, and its weights there and in both neighbours."""
+
+    @register_jitable(forceinline=True)
+    @named(mark)
+    def cell_and_weights(storage, axis, p, lower, inverse, cells):  # type: ignore[no-untyped-def]
+        coordinate = (along(storage, axis, p) - lower[axis]) * inverse
+        # A point on the upper wall belongs to the last cell.
+        cell = min(int(coordinate), cells[axis] - 2)
+        # From the middle of the cell before.
+        return cell, quadratic_weights(coordinate - cell + 0.5)
+
+    return cell_and_weights
+
+
+def _make_add_to_squares(cell_and_weights: Callable[..., Any], mark: str) -> Callable[..., Any]:
+    @register_jitable(forceinline=True)
+    @named(mark)
+    def add_to_squares(storage, p, volume, lower, inverse, fill):  # type: ignore[no-untyped-def]
+        i, wx = cell_and_weights(storage, 0, p, lower, inverse, fill.shape)
+        j, wy = cell_and_weights(storage, 1, p, lower, inverse, fill.shape)
+        for a in range(3):
+            for b in range(3):
+                fill[i + a - 1, j + b - 1] += volume * wx[a] * wy[b]
+
+    return add_to_squares
+
+
+def _make_add_to_cubes(cell_and_weights: Callable[..., Any], mark: str) -> Callable[..., Any]:
+    @register_jitable(forceinline=True)
+    @named(mark)
+    def add_to_cubes(storage, p, volume, lower, inverse, fill):  # type: ignore[no-untyped-def]
+        i, wx = cell_and_weights(storage, 0, p, lower, inverse, fill.shape)
+        j, wy = cell_and_weights(storage, 1, p, lower, inverse, fill.shape)
+        k, wz = cell_and_weights(storage, 2, p, lower, inverse, fill.shape)
+        for a in range(3):
+            for b in range(3):
+                share = volume * wx[a] * wy[b]
+                for c in range(3):
+                    fill[i + a - 1, j + b - 1, k + c - 1] += share * wz[c]
+
+    return add_to_cubes

@@ -1,7 +1,12 @@
-"""The background grid: one flat array of nodes, of which only those around the material are ever touched."""
+"""The background grid: one flat array of nodes, of which only those around the material are ever touched.
 
+Nodes are numbered along the last axis first. All nodes with the same numbers along the axes before it are a column of
+nodes; columns are numbered in the same way. Work on the grid follows columns, and is the same in two and three axes.
+"""
+
+import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,16 +14,33 @@ from numpy.typing import NDArray
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.mpm_core.kernels.simd.registers import LANES
 from grainlaw.mpm_core.layout import CACHE_LINE
+from grainlaw.mpm_core.space import Space
 
-# Components of a node, two quads, in double precision a cache line. The first quad: momentum and force before the
-# momentum update, new and old velocity after it. The second: mass, volume and volume times pressure before, mass and
-# what `volume_coupling` takes after.
-PX, PY, FX, FY = 0, 1, 2, 3
-NEW_VX, NEW_VY, OLD_VX, OLD_VY = 0, 1, 2, 3
-BULK = LANES
-MASS, VOLUME, VOLUME_PRESSURE = BULK, BULK + 1, BULK + 2
-NODE_PRESSURE, NODE_DENSITY = BULK + 1, BULK + 2
+# Numbers of a node, two quads, in double precision a cache line.
 COMPONENTS = 2 * LANES
+
+
+class NodeComponents(NamedTuple):
+    """Which number of a node is which; of vectors the number of the first component.
+
+    momentum  before the momentum update; after it the new velocity
+    force     before the momentum update; after it the old velocity
+    mass      of the node
+    bulk      volume, and behind it volume times pressure, before the momentum update; after it mean pressure and mean
+              density, which `volume_coupling` takes. In three dimensions they stand in an array of their own, as a
+              node is full without them
+    """
+
+    momentum: int
+    force: int
+    mass: int
+    bulk: int
+
+
+# Two axes: momentum and force | mass, volume, volume times pressure. Three: momentum and mass | force.
+NODE_OF = {2: NodeComponents(0, 2, LANES, LANES + 1), 3: NodeComponents(0, LANES, 3, 0)}
+# Numbers of a node in the array of its own that bulk quantities have in three dimensions.
+BULK_COMPONENTS = 2
 
 # Nodes beyond each side of the domain, enough for the widest stencil of a point that touches a wall.
 GHOSTS = 2
@@ -27,7 +49,7 @@ NO_GHOSTS = (-1, 2**31 - 1)
 
 
 class Grid:
-    """A rectangle of `cells` square cells of `cell_size` [m] whose lower corner is `lower` [m].
+    """A box of `cells` square or cubic cells of `cell_size` [m] whose lower corner is `lower` [m].
 
     `precision` is one of `PRECISIONS`.
     Memory is reserved for the whole domain but, being zero until written, occupied only where material has been.
@@ -35,35 +57,49 @@ class Grid:
 
     def __init__(
         self,
-        lower: tuple[float, float],
-        cells: tuple[int, int],
+        space: Space,
+        lower: Sequence[float],
+        cells: Sequence[int],
         cell_size: float,
         periodic_axes: Sequence[int] = (),
         precision: str = "double",
     ) -> None:
-        self.lower = lower
-        self.cells = cells
+        self.space = space
+        self.lower = tuple(lower)
+        self.cells = tuple(cells)
         self.cell_size = cell_size
-        self.upper = (lower[0] + cells[0] * cell_size, lower[1] + cells[1] * cell_size)
-        self.shape = (cells[0] + 1 + 2 * GHOSTS, cells[1] + 1 + 2 * GHOSTS)
+        self.upper = tuple(low + count * cell_size for low, count in zip(lower, cells, strict=True))
+        self.shape = tuple(count + 1 + 2 * GHOSTS for count in cells)
         self.precision = precision
+        self.components = NODE_OF[space.axes]
         self.nodes = self.empty_nodes()
-        # The nodes just beyond the walls, whose velocity is tied to the inside; no node where the axis is periodic.
-        walls = [NO_GHOSTS if axis in periodic_axes else self._ghosts(axis) for axis in (0, 1)]
-        self.ghosts = (*walls[0], *walls[1])
-        self.origin = (lower[0] - GHOSTS * cell_size, lower[1] - GHOSTS * cell_size)
+        self.bulk = self.empty_bulk()
+        # Of each axis the nodes just beyond its walls, whose velocity is tied to the inside; no node where it is
+        # periodic. All in one tuple: compiled passes take no tuples of tuples.
+        self.ghosts = tuple(ghost for axis in range(space.axes) for ghost in self._ghosts(axis, periodic_axes))
+        self.origin = tuple(low - GHOSTS * cell_size for low in self.lower)
 
     def empty_nodes(self) -> NDArray[Any]:
         """Another set of nodes like `nodes`, all zero."""
-        return _aligned_zeros(self.shape[0] * self.shape[1] * COMPONENTS, PRECISIONS[self.precision])
+        return _aligned_zeros(math.prod(self.shape) * COMPONENTS, PRECISIONS[self.precision])
+
+    def empty_bulk(self) -> NDArray[Any]:
+        """Another set of numbers like `bulk`, all zero; none where nodes hold them."""
+        nodes = math.prod(self.shape) if self.space.axes == 3 else 0
+        return _aligned_zeros(nodes * BULK_COMPONENTS, PRECISIONS[self.precision])
+
+    def _ghosts(self, axis: int, periodic_axes: Sequence[int]) -> tuple[int, int]:
+        return NO_GHOSTS if axis in periodic_axes else (GHOSTS - 1, GHOSTS + self.cells[axis] + 1)
 
     @property
-    def strides(self) -> tuple[int, int]:
-        """Distance in `nodes` between neighbours along x and along y."""
-        return self.shape[1] * COMPONENTS, COMPONENTS
+    def strides(self) -> tuple[int, ...]:
+        """Distance between neighbouring nodes along each axis, in nodes."""
+        return tuple(math.prod(self.shape[axis + 1 :]) for axis in range(self.space.axes))
 
-    def _ghosts(self, axis: int) -> tuple[int, int]:
-        return GHOSTS - 1, GHOSTS + self.cells[axis] + 1
+    @property
+    def columns(self) -> int:
+        """Number of columns of nodes."""
+        return math.prod(self.shape[:-1])
 
 
 def _aligned_zeros(count: int, number: type[np.floating[Any]]) -> NDArray[Any]:

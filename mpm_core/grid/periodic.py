@@ -1,18 +1,24 @@
 """Periodic sides: nodes that are one and the same."""
 
+import math
+from typing import Any
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from grainlaw.materials.compilation import named
-from grainlaw.mpm_core.grid.grid import COMPONENTS, Grid
+from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 
 
-def join_periodic(grid: Grid, axis: int) -> None:
-    """Add up the nodes that are one and the same across a periodic axis, and give all copies the sum."""
-    across, along = grid.strides[axis], grid.strides[1 - axis]
-    _join(grid.nodes, across, along, grid.shape[axis], grid.shape[1 - axis], grid.cells[axis])
+def join_periodic(grid: Grid, numbers: NDArray[Any], axis: int) -> None:
+    """Add up the nodes that are one and the same across a periodic axis, and give all copies the sum.
+
+    `numbers` are `Grid.nodes` or `Grid.bulk`.
+    """
+    layers = numbers.reshape(math.prod(grid.shape[:axis]), grid.shape[axis], -1)
+    _join(layers, grid.cells[axis])
 
 
 def join_marks(marks: NDArray[np.bool_], axis: int, period: int) -> None:
@@ -25,14 +31,13 @@ def join_marks(marks: NDArray[np.bool_], axis: int, period: int) -> None:
 
 @njit(cache=True)
 @named(CORE_MARK)
-def _join(nodes, across, along, rows, count, period):  # type: ignore[no-untyped-def]
-    # Over few cells there are three copies of a node.
-    for low in range(min(period, rows - period)):
-        for k in range(count):
-            first = low * across + k * along
-            for c in range(COMPONENTS):
-                total = nodes[first + c]
-                for copy in range(low + period, rows, period):
-                    total += nodes[copy * across + k * along + c]
-                for copy in range(low, rows, period):
-                    nodes[copy * across + k * along + c] = total
+def _join(layers, period):  # type: ignore[no-untyped-def]
+    # Over few cells there are three copies of a node, or more.
+    for outer in range(layers.shape[0]):
+        for low in range(min(period, layers.shape[1] - period)):
+            for c in range(layers.shape[2]):
+                total = layers[outer, low, c]
+                for copy in range(low + period, layers.shape[1], period):
+                    total += layers[outer, copy, c]
+                for copy in range(low, layers.shape[1], period):
+                    layers[outer, copy, c] = total

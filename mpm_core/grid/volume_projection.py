@@ -6,10 +6,11 @@ do not know. An implicit density projection, as for fluids (Kugelstadt, Longva, 
 
     lap psi = V/h^2 - 1,    x <- x + grad psi
 
-with the volume V that points bring to a cell. psi is zero in the air, and nothing moves through a wall, through
-material that carries tension, or through what sleeps. A cell near a free surface, or near a wall that the material does
-not touch, may be less than full; more than full it may not be. Differences of psi across the faces of cells are
-interpolated linearly at the points.
+with the volume V that points bring to a cell; in axisymmetry with the area V/r, and (1/r) d(r dpsi/dr)/dr for the
+derivatives along the radius. psi is zero in the air, and nothing moves through a wall, through material that carries
+tension, or through what sleeps. A cell near a free surface, or near a wall that the material does not touch, may be
+less than full; more than full it may not be. Differences of psi across the faces of cells are interpolated linearly at
+the points.
 
 It is done when the fastest point has drifted far enough since the last time: the intervals follow from the motion, not
 from the step, and at rest there are none.
@@ -29,8 +30,10 @@ from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.grid.cell_volumes import CellVolumes, CellWindow, WallGap, cell_volumes, corner, filled_padding
 from grainlaw.mpm_core.grid.elliptic import solve
 from grainlaw.mpm_core.grid.grid import Grid
+from grainlaw.mpm_core.kernels.law_at_points import replaced
 from grainlaw.mpm_core.kernels.positions import position_access
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
+from grainlaw.mpm_core.space import Space
 
 # The root mean square of what is left of the overfill [1].
 TOLERANCE = 1e-3
@@ -48,7 +51,7 @@ LONGEST_WAY = 0.25
 class Projected(NamedTuple):
     """What a projection did.
 
-    raised       potential energy that the points gained, per width [J/m]
+    raised       potential energy that the points gained [J]
     bounded      number of faces that would have been moved farther than `LONGEST_WAY`
     longest_way  of a point [m]
     iterations   of the solver
@@ -64,7 +67,7 @@ def project_volumes(
     bodies: Sequence[Body],
     grid: Grid,
     periodic_axes: Sequence[int],
-    gravity: tuple[float, float],
+    gravity: tuple[float, ...],
     gaps: Sequence[WallGap] = (),
 ) -> Projected:
     """Move the points of loose bodies that are awake so that each cell has the volume it has room for.
@@ -74,23 +77,35 @@ def project_volumes(
     volumes = cell_volumes(bodies, grid, periodic_axes, gaps)
     overfill = _overfill(volumes)
     is_unknown = volumes.is_material & ~volumes.is_held
-    conductances = _conductances(volumes)
-    zeroth = np.full(overfill.shape, COMPRESSIBILITY)
-    psi, iterations = solve(zeroth, conductances, is_unknown, -overfill, periodic_axes, TOLERANCE)
+    faces = _faces(volumes)
+    cell_radii, face_radii = _radii(grid, volumes.window)
+    zeroth = np.full(overfill.shape, COMPRESSIBILITY) * cell_radii
+    conductances = [faces[0] * face_radii, *(along * cell_radii for along in faces[1:])]
+    psi, iterations = solve(zeroth, conductances, is_unknown, -overfill * cell_radii, periodic_axes, TOLERANCE)
     psi -= SHARPENING * np.where(is_unknown, overfill, 0.0)
     raised, bounded, longest = 0.0, 0, 0.0
     if iterations > 0:
-        ways = _ways(psi, conductances, volumes.window)
-        bounded = sum(int(np.count_nonzero(np.abs(way[1:-1, 1:-1]) > LONGEST_WAY)) for way in ways)
+        ways = _ways(psi, faces, volumes.window)
+        cells = (slice(1, -1),) * overfill.ndim
+        bounded = sum(int(np.count_nonzero(np.abs(way[cells]) > LONGEST_WAY)) for way in ways)
         ways = [np.clip(way, -LONGEST_WAY, LONGEST_WAY) for way in ways]
         for body in bodies:
             if body.is_loose:
-                move = _make_move(body.precision)
+                move = _make_move(body.space, body.precision)
                 place = corner(volumes.window, grid), grid.cell_size
-                risen, way = move(body.storage, body.awake, *place, *ways, *gravity)
-                raised += body.point_mass * risen
+                risen, way = move(body.storage, body.awake, body.point_mass, *place, tuple(ways), gravity)
+                raised += risen
                 longest = max(longest, way)
     return Projected(raised, bounded, longest, iterations)
+
+
+def _radii(grid: Grid, window: CellWindow) -> tuple[NDArray[np.float64] | float, NDArray[np.float64] | float]:
+    """Radii of the middles of cells and of the faces behind them, in those of the window's middle; elsewhere ones."""
+    if not grid.space.hoop:
+        return 1.0, 1.0
+    middles = corner(window, grid)[0] / grid.cell_size + 0.5 + np.arange(window.shape[0])
+    radii = np.maximum(np.stack([middles, middles + 0.5]), 0.0)[..., np.newaxis] / middles.mean()
+    return radii[0], radii[1]
 
 
 def _overfill(volumes: CellVolumes) -> NDArray[np.float64]:
@@ -99,7 +114,7 @@ def _overfill(volumes: CellVolumes) -> NDArray[np.float64]:
     return np.where(volumes.is_interior(), excess, np.maximum(excess, 0.0))
 
 
-def _conductances(volumes: CellVolumes) -> list[NDArray[np.float64]]:
+def _faces(volumes: CellVolumes) -> list[NDArray[np.float64]]:
     """One for each face, with the next cell along each axis, that points may move through: no wall, nothing held."""
     is_held = filled_padding(volumes.is_held, volumes.window)
     found = []
@@ -113,43 +128,58 @@ def _conductances(volumes: CellVolumes) -> list[NDArray[np.float64]]:
 
 
 def _ways(
-    psi: NDArray[np.float64], conductances: Sequence[NDArray[np.float64]], window: CellWindow
+    psi: NDArray[np.float64], faces: Sequence[NDArray[np.float64]], window: CellWindow
 ) -> list[NDArray[np.float64]]:
     """What grad psi moves on the face between each cell and the next along each axis, in cells."""
     continued = filled_padding(psi, window)
-    return [faces * (np.roll(continued, -1, axis) - continued) for axis, faces in enumerate(conductances)]
+    return [open_faces * (np.roll(continued, -1, axis) - continued) for axis, open_faces in enumerate(faces)]
 
 
-@register_jitable
-def _between(values, x, y):  # type: ignore[no-untyped-def]
-    """Interpolate linearly."""
-    i, j = int(x), int(y)
-    u, v = x - i, y - j
+@register_jitable(forceinline=True)
+def _between(values, at):  # type: ignore[no-untyped-def]
+    """Interpolate linearly in two axes."""
+    i, j = int(at[0]), int(at[1])
+    u, v = at[0] - i, at[1] - j
     lower = values[i, j] + v * (values[i, j + 1] - values[i, j])
     upper = values[i + 1, j] + v * (values[i + 1, j + 1] - values[i + 1, j])
     return lower + u * (upper - lower)
 
 
+@register_jitable(forceinline=True)
+def _between_in_3d(values, at):  # type: ignore[no-untyped-def]
+    """Interpolate linearly in three axes."""
+    i, rest = int(at[0]), (at[1], at[2])
+    lower, upper = _between(values[i], rest), _between(values[i + 1], rest)
+    return lower + (at[0] - i) * (upper - lower)
+
+
 @cache
-def _make_move(precision: str) -> Callable[..., Any]:
-    access = position_access(precision)
-    along, put_along = access.along, access.put_along
+def _make_move(space: Space, precision: str) -> Callable[..., Any]:
+    access, axes = position_access(space, precision), space.axes
+    along, put_along, mass_of = access.along, access.put_along, access.mass
+    between, nowhere = {2: _between, 3: _between_in_3d}[axes], (0.0,) * axes
 
     @njit(error_model="numpy", cache=True)
-    @named(f"{precision}_{CORE_MARK}")
-    def move(storage, count, lower, cell_size, ways_x, ways_y, gravity_x, gravity_y):  # type: ignore[no-untyped-def]
-        """Move points by what the faces around them say; returns what they gained in height times gravity."""
-        inverse, risen, longest = 1.0 / cell_size, 0.0, 0.0
+    @named(f"{space.name}_{precision}_{CORE_MARK}")
+    def move(storage, count, point_mass, lower, cell_size, ways, gravity):  # type: ignore[no-untyped-def]
+        """Move points by what the faces around them say; returns the energy that they gained and the longest way."""
+        inverse, raised, longest = 1.0 / cell_size, 0.0, 0.0
         for p in range(count):
-            at_x, at_y = along(storage, 0, p), along(storage, 1, p)
-            x, y = (at_x - lower[0]) * inverse, (at_y - lower[1]) * inverse
-            # The face behind cell c is at c + 1, the middle of cell c at c + 1/2.
-            way_x = _between(ways_x, x - 1.0, y - 0.5)
-            way_y = _between(ways_y, x - 0.5, y - 1.0)
-            longest = max(longest, np.sqrt(way_x * way_x + way_y * way_y))
-            put_along(storage, 0, p, at_x + cell_size * way_x)
-            put_along(storage, 1, p, at_y + cell_size * way_y)
-            risen -= cell_size * (gravity_x * way_x + gravity_y * way_y)
-        return risen, cell_size * longest
+            at, moved = nowhere, nowhere
+            for axis in range(axes):
+                # The middle of cell c is at c + 1/2.
+                at = replaced(at, axis, (along(storage, axis, p) - lower[axis]) * inverse - 0.5)
+            squared, risen = 0.0, 0.0
+            for axis in range(axes):
+                # The face behind cell c is at c + 1.
+                way = between(ways[axis], replaced(at, axis, at[axis] - 0.5))
+                moved = replaced(moved, axis, way)
+                squared += way * way
+                risen -= cell_size * gravity[axis] * way
+            for axis in range(axes):
+                put_along(storage, axis, p, along(storage, axis, p) + cell_size * moved[axis])
+            longest = max(longest, np.sqrt(squared))
+            raised += mass_of(storage, p, point_mass) * risen
+        return raised, cell_size * longest
 
     return move

@@ -10,38 +10,44 @@ from numba import njit
 
 from grainlaw.materials.compilation import PointwiseLaw, explained, named, pointwise_law
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.kernels.law_at_points import make_state_access, point_access
+from grainlaw.mpm_core.kernels.kinematics import kinematics
+from grainlaw.mpm_core.kernels.law_at_points import make_state_access
+from grainlaw.mpm_core.kernels.positions import position_access
+from grainlaw.mpm_core.kernels.rows import rows_of
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
-from grainlaw.mpm_core.layout import DENSITY, X
+from grainlaw.mpm_core.layout import layout_of
+from grainlaw.mpm_core.space import Space
 
 
 @cache
-def _sum_over_points(law: PointwiseLaw) -> Callable[..., Any]:
-    """A kernel that sums a law's energy per mass over the points, in their order."""
+def _sum_over_points(space: Space, law: PointwiseLaw, precision: str) -> Callable[..., Any]:
+    """A kernel that sums a law's energy over the points, in their order."""
     stored_energy: Any = law.stored_energy
     parameter_class = law.parameters
-    mark = f"{law.mark}_{CORE_MARK}"
-    load, _ = make_state_access(law.state, mark)
-    stress_at, _ = point_access("double")
+    mark = f"{space.name}_{precision}_{law.mark}_{CORE_MARK}"
+    load, _ = make_state_access(space, law.state, mark)
+    stress_at, mass_of = kinematics(space, "double").stress, position_access(space, precision).mass
+    density = layout_of(space).density
+    all_rows = (0.0,) * (layout_of(space).first_state + len(law.state._fields))
 
     @njit(error_model="numpy", cache=True)
     @named(mark)
-    def sum_of_energies(rows, parameters):  # type: ignore[no-untyped-def]
-        law_parameters = parameter_class(*parameters)
-        total = 0.0
-        for p in range(len(rows[X])):
-            total += stored_energy(stress_at(rows, p), np.float64(rows[DENSITY][p]), load(rows, p), law_parameters)
+    def sum_of_energies(storage, count, point_mass, parameters):  # type: ignore[no-untyped-def]
+        rows, law_parameters, total = rows_of(storage, all_rows), parameter_class(*parameters), 0.0
+        for p in range(count):
+            energy = stored_energy(stress_at(rows, p), np.float64(rows[density][p]), load(rows, p), law_parameters)
+            total += mass_of(storage, p, point_mass) * energy
         return total
 
     return sum_of_energies
 
 
 def elastic_energy(body: Body) -> float:
-    """The elastic energy of a body per width [J/m]; NaN if its law does not state its energy.
+    """The elastic energy of a body [J and the space's amount]; NaN if its law does not state its energy.
 
     Raises InputError if the law's energy does not compile.
     """
     if body.law.stored_energy is None:
         return math.nan
-    kernel = _sum_over_points(pointwise_law(body.law))
-    return body.point_mass * float(explained(body.law, kernel, tuple(body.points), tuple(body.parameters)))
+    kernel = _sum_over_points(body.space, pointwise_law(body.law), body.precision)
+    return float(explained(body.law, kernel, body.storage, body.count, body.point_mass, tuple(body.parameters)))

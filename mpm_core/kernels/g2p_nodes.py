@@ -35,10 +35,10 @@ def make_gather(basis: Basis, component: int, with_gradients: bool, precision: s
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{component}_{with_gradients:d}_{precision}_{CORE_MARK}")
-    def gather(count, nodes, nodes_y, stencils, interpolated):  # type: ignore[no-untyped-def]
+    def gather(count, nodes, column, stencils, interpolated):  # type: ignore[no-untyped-def]
         first_nodes, weights_x, weights_y, slopes_x, slopes_y, _, _ = stencils
         means, gradients_x, gradients_y = interpolated
-        row_length = np.uint64(nodes_y * COMPONENTS)
+        row_length = np.uint64(column * COMPONENTS)
         for k in range(count):
             row = np.uint64(first_nodes[k]) * np.uint64(COMPONENTS) + first_component
             along_y = filled_like(0.0, values_at(nodes, row))

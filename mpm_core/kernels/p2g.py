@@ -6,6 +6,8 @@ brings the velocity field v + A (x - x_p) and the force of its stress,
     m_i += w_i m;  V_i += w_i V;  (V p)_i += w_i V p;
     (m v)_i += w_i m (v + A (x_i - x_p));  f_i -= w_i V sigma (x_i - x_p) / D.
 
+In axisymmetry m and V are per radian, and the stress around the axis pulls inwards besides, f_r,i -= w_i V sigma_zz/r.
+
 Momentum and force are linear in the number of the node, `corner + a along_x + b along_y` for the node (a, b) of the
 stencil, so that one addition leads from node to node (`scatter`).
 
@@ -31,12 +33,13 @@ from grainlaw.mpm_core.grid.grid import COMPONENTS
 from grainlaw.mpm_core.kernels.p2g_nodes import make_scatter
 from grainlaw.mpm_core.kernels.positions import position_access
 from grainlaw.mpm_core.kernels.shape_functions import Basis
-from grainlaw.mpm_core.kernels.simd.arithmetic import filled_like, scaled_sum
+from grainlaw.mpm_core.kernels.simd.arithmetic import as_lanes, filled_like, rounding_to, scaled_sum
 from grainlaw.mpm_core.kernels.simd.registers import LANES_OF, put, put_transposed, several_at
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.kernels.stencil import GROUP, make_find_stencils
-from grainlaw.mpm_core.layout import AXX, AXY, AYX, AYY, DENSITY, SXX, SXY, SYY, SZZ, VX, VY
+from grainlaw.mpm_core.layout import layout_of
 from grainlaw.mpm_core.parallel.work_sharing import chunk_ranges, next_chunk, threads_of
+from grainlaw.mpm_core.space import Space
 
 
 class P2GContributions(NamedTuple):
@@ -56,27 +59,40 @@ class P2GContributions(NamedTuple):
     increments: Any
 
 
-@register_jitable(forceinline=True)
-def put_contributions(rows, p, k, point_mass, cell_size, along_x, along_y, contributions):  # type: ignore[no-untyped-def]
-    """Store what the points from p on contribute, as many as are taken at once, from point k of a group on."""
-    # to the first node
-    x, y = 0.0 - along_x.place, 0.0 - along_y.place
-    affine = point_mass * cell_size
-    volume = point_mass / several_at(rows[DENSITY], p)
-    scale = (-1.0 / cell_size) * volume
-    scale_x, scale_y = scale * along_x.per_moment, scale * along_y.per_moment
-    sxx, syy, sxy = several_at(rows[SXX], p), several_at(rows[SYY], p), several_at(rows[SXY], p)
-    px_x, py_x = affine * several_at(rows[AXX], p), affine * several_at(rows[AYX], p)
-    px_y, py_y = affine * several_at(rows[AXY], p), affine * several_at(rows[AYY], p)
-    fx_x, fy_x = scale_x * sxx, scale_x * sxy
-    fx_y, fy_y = scale_y * sxy, scale_y * syy
-    px = scaled_sum(x, px_x, scaled_sum(y, px_y, point_mass * several_at(rows[VX], p)))
-    py = scaled_sum(x, py_x, scaled_sum(y, py_y, point_mass * several_at(rows[VY], p)))
-    fx, fy = scaled_sum(x, fx_x, y * fx_y), scaled_sum(x, fy_x, y * fy_y)
-    pressure = (sxx + syy + several_at(rows[SZZ], p)) * -THIRD
-    bulk = filled_like(point_mass, volume), volume, volume * pressure, filled_like(0.0, volume)
-    put_transposed(contributions.values, k, (px, py, fx, fy, *bulk))
-    put_transposed(contributions.increments, k, (px_x, py_x, fx_x, fy_x, px_y, py_y, fx_y, fy_y))
+def make_put_contributions(space: Space, precision: str) -> Callable[..., Any]:
+    """A function that stores what points contribute, as many as are taken at once, from point k of a group on."""
+    layout, position_at = layout_of(space), position_access(space, precision).at
+    vx, vy = layout.velocity, layout.velocity + 1
+    axx, axy, ayx, ayy = range(layout.affine, layout.affine + 4)
+    sxx, syy, szz, sxy = range(layout.stress, layout.stress + 4)
+    density, mass_row, hoop, rounded = layout.density, layout.mass, space.hoop, rounding_to(precision)
+
+    @register_jitable(forceinline=True)
+    @named(f"{space.name}_{precision}_{CORE_MARK}")
+    def put_contributions(rows, p, k, point_mass, cell_size, along_x, along_y, contributions):  # type: ignore[no-untyped-def]
+        # to the first node
+        x, y = 0.0 - along_x.place, 0.0 - along_y.place
+        mass = several_at(rows[mass_row], p) if hoop else point_mass
+        affine = mass * cell_size
+        volume = mass / several_at(rows[density], p)
+        scale = (-1.0 / cell_size) * volume
+        scale_x, scale_y = scale * along_x.per_moment, scale * along_y.per_moment
+        xx, yy, xy = several_at(rows[sxx], p), several_at(rows[syy], p), several_at(rows[sxy], p)
+        px_x, py_x = affine * several_at(rows[axx], p), affine * several_at(rows[ayx], p)
+        px_y, py_y = affine * several_at(rows[axy], p), affine * several_at(rows[ayy], p)
+        fx_x, fy_x = scale_x * xx, scale_x * xy
+        fx_y, fy_y = scale_y * xy, scale_y * yy
+        px = scaled_sum(x, px_x, scaled_sum(y, px_y, mass * several_at(rows[vx], p)))
+        py = scaled_sum(x, py_x, scaled_sum(y, py_y, mass * several_at(rows[vy], p)))
+        fx, fy = scaled_sum(x, fx_x, y * fx_y), scaled_sum(x, fy_x, y * fy_y)
+        if hoop:
+            fx = fx - volume * several_at(rows[szz], p) / rounded(position_at(rows, p)[0])
+        pressure = (xx + yy + several_at(rows[szz], p)) * -THIRD
+        bulk = as_lanes(mass, volume), volume, volume * pressure, filled_like(0.0, volume)
+        put_transposed(contributions.values, k, (px, py, fx, fy, *bulk))
+        put_transposed(contributions.increments, k, (px_x, py_x, fx_x, fy_x, px_y, py_y, fx_y, fy_y))
+
+    return put_contributions
 
 
 def make_put_weights(basis: Basis) -> Callable[..., Any]:
@@ -94,16 +110,20 @@ def make_put_weights(basis: Basis) -> Callable[..., Any]:
 
 
 @cache
-def make_p2g(basis: Basis, precision: str) -> Callable[..., Any]:
-    """Scatter mass, volume, pressure, momentum and internal force to the grid; the precision is that of both."""
-    put_weights, scatter = make_put_weights(basis), make_scatter(basis)
-    find_stencils, rows_of_points = make_find_stencils(basis, precision), position_access(precision).rows
+def make_p2g(space: Space, basis: Basis, precision: str) -> Callable[..., Any]:
+    """Scatter mass, volume, pressure, momentum and internal force to the grid; the precision is that of both.
+
+    `point_mass` is the mass of each point; points have their own in axisymmetry. `strides` are those of the grid.
+    """
+    put_contributions, put_weights = make_put_contributions(space, precision), make_put_weights(basis)
+    find_stencils, rows_of_points = make_find_stencils(space, basis, precision), position_access(space, precision).rows
     nodes_of_stencil, number, at_once = basis.width**2, PRECISIONS[precision], LANES_OF[precision]
+    scatter = make_scatter(basis)
 
     @njit(parallel=True, error_model="numpy", cache=True)
-    @named(f"{basis.name}_{precision}_{CORE_MARK}")
+    @named(f"{space.name}_{basis.name}_{precision}_{CORE_MARK}")
     def p2g(  # type: ignore[no-untyped-def]
-        storage, point_mass, stripe_starts, threads, nodes, nodes_y, ghosts, origin, cell_size
+        storage, point_mass, stripe_starts, threads, nodes, strides, ghosts, origin, cell_size
     ):
         rows, inverse_size = rows_of_points(storage), 1.0 / cell_size
         for parity in range(2):
@@ -119,11 +139,11 @@ def make_p2g(basis: Basis, precision: str) -> Callable[..., Any]:
                         first, last = np.uint64(start), np.uint64(min(start + GROUP, end))
                         for p in range(first, last, at_once):
                             k = p - first
-                            first_node, along_x, along_y = find_stencils(rows, p, nodes_y, ghosts, origin, inverse_size)
+                            first_node, along_x, along_y = find_stencils(rows, p, strides, ghosts, origin, inverse_size)
                             put(contributions.first_nodes, k, first_node)
                             put_weights(contributions.weights, k, along_x, along_y)
                             put_contributions(rows, p, k, point_mass, cell_size, along_x, along_y, contributions)
-                        scatter(last - first, nodes, nodes_y, contributions)
+                        scatter(last - first, nodes, strides[0], contributions)
                     chunk = next_chunk(ranges, thread)
 
     return p2g

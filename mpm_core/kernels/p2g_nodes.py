@@ -79,8 +79,8 @@ def make_scatter(basis: Basis) -> Callable[..., Any]:
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{CORE_MARK}")
-    def scatter(count, nodes, nodes_y, contributions):  # type: ignore[no-untyped-def]
-        first_nodes, row_length = contributions.first_nodes, np.uint64(nodes_y * COMPONENTS)
+    def scatter(count, nodes, column, contributions):  # type: ignore[no-untyped-def]
+        first_nodes, row_length = contributions.first_nodes, np.uint64(column * COMPONENTS)
         k = np.uint64(0)
         while k < count:
             row = np.uint64(first_nodes[k]) * np.uint64(COMPONENTS)

@@ -7,6 +7,7 @@ Hughes & Winget 1980, Int. J. Numer. Methods Eng. 15, 1862).
 
 from grainlaw.materials.elementary import fused
 from grainlaw.materials.single_precision import adaptable
+from grainlaw.materials.tensor import SymmetricTensor
 
 
 @adaptable
@@ -32,3 +33,40 @@ def at_end_of_step(xx, yy, xy, angle):  # type: ignore[no-untyped-def]
     mean, half, cosine = 0.5 * (xx + yy), 0.5 * (xx - yy), 1.0 - 0.5 * angle * angle
     turned = half * cosine - xy * angle
     return mean + turned, mean - turned, half * angle + xy * cosine
+
+
+@adaptable
+def rotation_matrix(x, y, z):  # type: ignore[no-untyped-def]
+    """The rotation by a vector, 1 + a K + b K^2 with K of the vector (Rodrigues), row after row.
+
+    The power series of a = sin(t)/t and b = (1 - cos(t))/t^2 end below 1e-12 at an angle of a quarter.
+    """
+    u = x * x + y * y + z * z
+    # the coefficients are inverse factorials
+    a = fused(u, fused(u, fused(u, fused(u, 1.0 / 362880.0, -1.0 / 5040.0), 1.0 / 120.0), -1.0 / 6.0), 1.0)
+    b = fused(u, fused(u, fused(u, -1.0 / 40320.0, 1.0 / 720.0), -1.0 / 24.0), 0.5)
+    cosine, ax, ay, az, bx, by = 1.0 - b * u, a * x, a * y, a * z, b * x, b * y
+    xy, xz, yz = bx * y, bx * z, by * z
+    return (
+        *(fused(bx, x, cosine), xy - az, xz + ay),
+        *(xy + az, fused(by, y, cosine), yz - ax),
+        *(xz - ay, yz + ax, fused(b * z, z, cosine)),
+    )
+
+
+@adaptable
+def rotated_tensor(s, r):  # type: ignore[no-untyped-def]
+    """R s R^T of a symmetric tensor, with R row after row."""
+    xx, xy, xz, yx, yy, yz, zx, zy, zz = r
+    # R s
+    a, b, c = xx * s.xx + xy * s.xy + xz * s.xz, xx * s.xy + xy * s.yy + xz * s.yz, xx * s.xz + xy * s.yz + xz * s.zz
+    d, e, f = yx * s.xx + yy * s.xy + yz * s.xz, yx * s.xy + yy * s.yy + yz * s.yz, yx * s.xz + yy * s.yz + yz * s.zz
+    g, h, i = zx * s.xx + zy * s.xy + zz * s.xz, zx * s.xy + zy * s.yy + zz * s.yz, zx * s.xz + zy * s.yz + zz * s.zz
+    return SymmetricTensor(
+        a * xx + b * xy + c * xz,
+        d * yx + e * yy + f * yz,
+        g * zx + h * zy + i * zz,
+        a * yx + b * yy + c * yz,
+        d * zx + e * zy + f * zz,
+        a * zx + b * zy + c * zz,
+    )

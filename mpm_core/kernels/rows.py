@@ -10,11 +10,6 @@ from numba.core import cgutils, types
 from numba.extending import intrinsic, register_jitable
 from numba.np.arrayobj import populate_array
 
-from grainlaw.mpm_core.layout import FIRST_STATE
-
-# A value for each of the rows that every law has, for `rows_of`.
-OF_EVERY_LAW = (0.0,) * FIRST_STATE
-
 
 @intrinsic
 def _rows_of(typing_context: Any, storage: Any, as_many: Any) -> Any:

@@ -17,7 +17,7 @@ from typing import Any
 from numba.extending import register_jitable
 
 from grainlaw.materials.compilation import named
-from grainlaw.mpm_core.kernels.simd.arithmetic import greater, lesser, narrowed, some_equal, truncated, where_equal
+from grainlaw.mpm_core.kernels.simd.arithmetic import greater, lesser, rounding_to, some_equal, truncated, where_equal
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 
 # Towards a wall the moment goes to zero with the mass of the row inside, and stiffness over mass grows without bound.
@@ -50,9 +50,9 @@ class Basis:
 
 
 @register_jitable
-def first_node(x, y, origin, cell_size, offset):  # type: ignore[no-untyped-def]
-    """Column and row of the first node of the stencil of a point, which lies beyond the origin by the offset."""
-    return int((x - origin[0]) / cell_size - offset), int((y - origin[1]) / cell_size - offset)
+def first_node(coordinate, origin, cell_size, offset):  # type: ignore[no-untyped-def]
+    """Number of the first node of the stencil of a point along an axis; it lies beyond the origin by the offset."""
+    return int((coordinate - origin) / cell_size - offset)
 
 
 @register_jitable
@@ -147,7 +147,7 @@ def make_stencil(basis: Basis, precision: str = "double") -> Callable[..., Any]:
     width, offset, weights = basis.width, basis.offset, basis.weights
     moment_of, at_lower_wall, at_upper_wall = basis.moment, basis.lower_wall, basis.upper_wall
     smallest = SMALLEST_MOMENT_AT_WALL if width > 2 else SMALLEST_MOMENT_OF_HATS
-    select, rounded = _make_select(width), narrowed if precision == "single" else _as_it_is
+    select, rounded = _make_select(width), rounding_to(precision)
     # Away from walls the moment of wide splines is the same everywhere, and no point needs a division.
     inverse_inside = 1.0 / basis.moment(1.0) if width > 2 else 0.0
 
@@ -168,11 +168,6 @@ def make_stencil(basis: Basis, precision: str = "double") -> Callable[..., Any]:
         return first, f, w, moment, inverse
 
     return stencil
-
-
-@register_jitable
-def _as_it_is(a):  # type: ignore[no-untyped-def]
-    return a
 
 
 def _make_select(width: int) -> Callable[..., Any]:

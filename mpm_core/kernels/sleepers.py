@@ -1,10 +1,15 @@
-"""What sleep does on the nodes and at the points (`stepping.sleeping`): copying, holding, marking what is stirred."""
+"""What sleep does on the nodes and at the points (`stepping.sleeping`): copying, holding, marking what is stirred.
+
+Marks are arrays over the nodes of the grid and `RING` more beyond each of its sides.
+"""
 
 import numpy as np
 from numba import njit, prange
+from numba.extending import register_jitable
+from numpy.typing import NDArray
 
 from grainlaw.materials.compilation import named
-from grainlaw.mpm_core.grid.grid import COMPONENTS, MASS, NEW_VX, NEW_VY
+from grainlaw.mpm_core.grid.grid import COMPONENTS
 from grainlaw.mpm_core.kernels.shape_functions import first_node
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 
@@ -14,62 +19,78 @@ RING = 3
 
 @njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def copy_nodes(source, target, nodes_y, active):  # type: ignore[no-untyped-def]
-    """Copy the active nodes."""
+def copy_nodes(source, target, components, column, active):  # type: ignore[no-untyped-def]
+    """Copy so many numbers of each active node."""
     for i in prange(active.first_column, active.last_column + 1):
         if active.last_rows[i] >= active.first_rows[i]:
-            first, last = (
-                (i * nodes_y + active.first_rows[i]) * COMPONENTS,
-                (i * nodes_y + active.last_rows[i] + 1) * COMPONENTS,
-            )
+            first = (i * column + active.first_rows[i]) * components
+            last = (i * column + active.last_rows[i] + 1) * components
             target[first:last] = source[first:last]
 
 
 @njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def hold_sleepers(nodes, held, withheld, active):  # type: ignore[no-untyped-def]
-    """Hold the nodes with sleeping mass, and sum up the momentum that is withheld from them."""
+def hold_sleepers(nodes, of_node, held, withheld, column, active):  # type: ignore[no-untyped-def]
+    """Hold the nodes with sleeping mass, and sum up the momentum that is withheld from them, shape (nodes, axes)."""
     for i in prange(active.first_column, active.last_column + 1):
         for j in range(active.first_rows[i], active.last_rows[i] + 1):
-            node = (i * withheld.shape[1] + j) * COMPONENTS
-            if held[i, j]:
-                withheld[i, j, 0] += nodes[node + MASS] * nodes[node + NEW_VX]
-                withheld[i, j, 1] += nodes[node + MASS] * nodes[node + NEW_VY]
-                nodes[node + NEW_VX] = nodes[node + NEW_VY] = 0.0
+            number = i * column + j
+            if held[number]:
+                node = number * COMPONENTS
+                for axis in range(withheld.shape[1]):
+                    velocity = node + of_node.momentum + axis
+                    withheld[number, axis] += nodes[node + of_node.mass] * nodes[velocity]
+                    nodes[velocity] = 0.0
 
 
 @njit(cache=True)
 @named(CORE_MARK)
-def stir_nodes(withheld, waking_squared, active, stirred):  # type: ignore[no-untyped-def]
-    """Mark what is around the nodes from which too much is withheld; returns whether there are any.
-
-    Of marks, here and below, there are `RING` rows beyond each side of the grid.
-    """
-    found = False
+def nodes_to_wake(withheld, waking_squared, column, active):  # type: ignore[no-untyped-def]
+    """Which of the nodes, one after another, too much is withheld from; nodes that are not active have nothing."""
+    found = np.zeros(len(withheld), np.bool_)
     for i in range(active.first_column, active.last_column + 1):
         for j in range(active.first_rows[i], active.last_rows[i] + 1):
-            if withheld[i, j, 0] ** 2 + withheld[i, j, 1] ** 2 > waking_squared:
-                stirred[i : i + 2 * RING + 1, j : j + 2 * RING + 1] = True
-                found = True
+            squared = 0.0
+            for axis in range(withheld.shape[1]):
+                squared += withheld[i * column + j, axis] ** 2
+            found[i * column + j] = squared > waking_squared
     return found
 
 
-@njit(cache=True)
-@named(CORE_MARK)
-def stir_around_points(x, y, origin, cell_size, offset, width, stirred):  # type: ignore[no-untyped-def]
-    """Mark what is around points."""
-    for p in range(len(x)):
-        i, j = first_node(x[p], y[p], origin, cell_size, offset)
-        stirred[i : i + width + 2 * RING, j : j + width + 2 * RING] = True
+@register_jitable
+def _number(places, p, origin, cell_size, offset, shape):  # type: ignore[no-untyped-def]
+    """Where the first node of the stencil of a point is among the marks, one after another."""
+    number = 0
+    for axis in range(len(origin)):
+        number = number * shape[axis] + first_node(places[axis, p], origin[axis], cell_size, offset) + RING
+    return number
 
 
 @njit(cache=True)
 @named(CORE_MARK)
-def touches_stirred(x, y, origin, cell_size, offset, width, stirred):  # type: ignore[no-untyped-def]
-    """Whether any node of the stencil of each point is marked."""
-    touched = np.empty(len(x), np.bool_)
-    for p in range(len(x)):
-        i, j = first_node(x[p], y[p], origin, cell_size, offset)
-        i, j = i + RING, j + RING
-        touched[p] = stirred[i : i + width, j : j + width].any()
-    return touched
+def mark_first_nodes(places, origin, cell_size, offset, shape, marks):  # type: ignore[no-untyped-def]
+    """Mark the first node of the stencil of each point, among marks of a shape, one after another."""
+    for p in range(places.shape[1]):
+        marks[_number(places, p, origin, cell_size, offset, shape)] = True
+
+
+@njit(cache=True)
+@named(CORE_MARK)
+def first_node_is_marked(places, origin, cell_size, offset, shape, marks):  # type: ignore[no-untyped-def]
+    """Whether the first node of the stencil of each point is marked."""
+    is_marked = np.empty(places.shape[1], np.bool_)
+    for p in range(places.shape[1]):
+        is_marked[p] = marks[_number(places, p, origin, cell_size, offset, shape)]
+    return is_marked
+
+
+def spread(marks: NDArray[np.bool_], before: int, behind: int) -> NDArray[np.bool_]:
+    """The marks, and along each axis so many nodes before and behind each of them."""
+    for axis in range(marks.ndim):
+        source, marks = np.moveaxis(marks, axis, 0), marks.copy()
+        target = np.moveaxis(marks, axis, 0)
+        for way in range(1, behind + 1):
+            target[way:] |= source[:-way]
+        for way in range(1, before + 1):
+            target[:-way] |= source[way:]
+    return marks

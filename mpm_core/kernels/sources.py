@@ -1,6 +1,6 @@
 """The mark of the core's compiled code: it changes whenever a file that kernels are made from changes.
 
-That is every file of the rooms below, the numbering of rows, and all of `materials`.
+That is every file of the rooms below, the numbering of rows, spaces, and all of `materials`.
 """
 
 from pathlib import Path
@@ -11,4 +11,4 @@ CORE = Path(__file__).parent.parent
 # Everything that is compiled stands in one of these rooms; a test keeps it so.
 KERNEL_ROOMS = ("kernels", "grid", "parallel")
 _FILES = [path for room in KERNEL_ROOMS for path in (CORE / room).rglob("*.py")]
-CORE_MARK = mark_of_sources([CORE / "layout.py", *_FILES])
+CORE_MARK = mark_of_sources([CORE / "layout.py", CORE / "space.py", *_FILES])

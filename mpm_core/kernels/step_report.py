@@ -8,16 +8,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from grainlaw.materials.compilation import named
-from grainlaw.mpm_core.kernels.g2p import (
-    HIGHEST_X,
-    HIGHEST_Y,
-    KINETIC_ENERGY,
-    LOWEST_X,
-    LOWEST_Y,
-    MAX_SPEED,
-    MOMENTUM_X,
-    MOMENTUM_Y,
-)
+from grainlaw.mpm_core.kernels.g2p import HIGHEST, KINETIC_ENERGY, LOWEST, MAX_SPEED, MOMENTUM, OF_AXES, PER_AXIS
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.kernels.stress_update import (
     INTERNAL_WORK,
@@ -26,43 +17,50 @@ from grainlaw.mpm_core.kernels.stress_update import (
     MAX_SIGNAL_SPEED,
 )
 
+# What the G2P reports for each axis, in this order.
+_EXTREMES_AND_MOMENTUM = (LOWEST, HIGHEST, MOMENTUM)
+
 
 class StepReport(NamedTuple):
-    """A step of a body, or of several.
+    """A step of a body, or of several; energies and momenta in the amounts of the space.
 
-    lowest_x ... highest_y  corners of its bounding box [m]
-    kinetic                 energy [J/m]
-    momentum_x, momentum_y        momentum of the motion of the points [kg/s]
-    internal_work           of the stress on the strain [J/m]
-    fastest                 speed at which a point moved [m/s]
-    signal_speed            largest sum of sound speed and speed [m/s]
-    increment               largest volumetric strain of the motion [1]; NaN if anything is not finite
-    diffusivity             largest viscosity over density [m2/s]
+    lowest, highest  corners of its bounding box [m]
+    momentum         of the motion of the points [kg m/s]
+    kinetic          energy [J]
+    fastest          speed at which a point moved [m/s]
+    internal_work    of the stress on the strain [J]
+    signal_speed     largest sum of sound speed and speed [m/s]
+    increment        largest volumetric strain of the motion [1]; NaN if anything is not finite
+    diffusivity      largest viscosity over density [m2/s]
     """
 
-    lowest_x: float
-    highest_x: float
-    lowest_y: float
-    highest_y: float
+    lowest: tuple[float, ...]
+    highest: tuple[float, ...]
+    momentum: tuple[float, ...]
     kinetic: float
-    momentum_x: float
-    momentum_y: float
-    internal_work: float
     fastest: float
+    internal_work: float
     signal_speed: float
     increment: float
     diffusivity: float
 
 
-# A body of which nothing is awake.
-_NOTHING = StepReport(math.inf, -math.inf, math.inf, -math.inf, *([0.0] * 8))
-
-
 def step_report(transfer: NDArray[np.float64], stress: NDArray[np.float64]) -> StepReport:
-    """The report of a body from those of its blocks."""
+    """The report of a body from those of its blocks; nothing moves where nothing is awake."""
+    axes = (transfer.shape[1] - OF_AXES) // PER_AXIS
     if len(stress) == 0:
-        return _NOTHING
-    return StepReport(*_combined(transfer, stress))
+        return StepReport((math.inf,) * axes, (-math.inf,) * axes, (0.0,) * axes, *([0.0] * 6))
+    lowest, highest, momentum = (
+        [OF_AXES + PER_AXIS * axis + which for axis in range(axes)] for which in _EXTREMES_AND_MOMENTUM
+    )
+    return StepReport(
+        tuple(transfer[:, lowest].min(axis=0).tolist()),
+        tuple(transfer[:, highest].max(axis=0).tolist()),
+        tuple(transfer[:, momentum].sum(axis=0).tolist()),
+        float(transfer[:, KINETIC_ENERGY].sum()),
+        float(transfer[:, MAX_SPEED].max()),
+        *_combined(stress),
+    )
 
 
 def together(reports: list[StepReport]) -> StepReport:
@@ -71,15 +69,12 @@ def together(reports: list[StepReport]) -> StepReport:
         return reports[0]
     each: Any = StepReport._make(zip(*reports, strict=True))
     return StepReport(
-        lowest_x=min(each.lowest_x),
-        highest_x=max(each.highest_x),
-        lowest_y=min(each.lowest_y),
-        highest_y=max(each.highest_y),
+        lowest=tuple(map(min, zip(*each.lowest, strict=True))),
+        highest=tuple(map(max, zip(*each.highest, strict=True))),
+        momentum=tuple(map(sum, zip(*each.momentum, strict=True))),
         kinetic=sum(each.kinetic),
-        momentum_x=sum(each.momentum_x),
-        momentum_y=sum(each.momentum_y),
-        internal_work=sum(each.internal_work),
         fastest=max(each.fastest),
+        internal_work=sum(each.internal_work),
         signal_speed=max(each.signal_speed),
         increment=max(each.increment),
         diffusivity=max(each.diffusivity),
@@ -88,7 +83,7 @@ def together(reports: list[StepReport]) -> StepReport:
 
 @njit(cache=True)
 @named(CORE_MARK)
-def _combined(transfer, stress):  # type: ignore[no-untyped-def]
+def _combined(stress):  # type: ignore[no-untyped-def]
     increment, signal_speed, diffusivity = 0.0, 0.0, 0.0
     for block in range(len(stress)):
         # not less, rather than greater: NaN has to come through
@@ -100,17 +95,4 @@ def _combined(transfer, stress):  # type: ignore[no-untyped-def]
             diffusivity = stress[block, MAX_DIFFUSIVITY]
         if np.isnan(increment) or np.isnan(signal_speed) or np.isnan(diffusivity):
             break
-    return (
-        transfer[:, LOWEST_X].min(),
-        transfer[:, HIGHEST_X].max(),
-        transfer[:, LOWEST_Y].min(),
-        transfer[:, HIGHEST_Y].max(),
-        transfer[:, KINETIC_ENERGY].sum(),
-        transfer[:, MOMENTUM_X].sum(),
-        transfer[:, MOMENTUM_Y].sum(),
-        stress[:, INTERNAL_WORK].sum(),
-        transfer[:, MAX_SPEED].max(),
-        signal_speed,
-        increment,
-        diffusivity,
-    )
+    return stress[:, INTERNAL_WORK].sum(), signal_speed, increment, diffusivity

@@ -18,7 +18,8 @@ from grainlaw.materials.compilation import PointwiseLaw, named
 from grainlaw.materials.elementary import fused
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.materials.single_precision import adaptable, in_precision
-from grainlaw.materials.tensor import THIRD, SymmetricTensor, shear_strain_rate
+from grainlaw.materials.tensor import pressure, shear_strain_rate
+from grainlaw.mpm_core.kernels.kinematics import kinematics
 from grainlaw.mpm_core.kernels.law_at_points import (
     make_apply_law,
     make_find_stiffness,
@@ -26,7 +27,6 @@ from grainlaw.mpm_core.kernels.law_at_points import (
     make_largest_signal_speed,
     ordered_bits,
 )
-from grainlaw.mpm_core.kernels.rotation import at_end_of_step, rotated
 from grainlaw.mpm_core.kernels.rows import rows_of
 from grainlaw.mpm_core.kernels.simd.arithmetic import filled, first_lanes, total
 from grainlaw.mpm_core.kernels.simd.registers import LANES, quad_at
@@ -36,23 +36,10 @@ from grainlaw.mpm_core.kernels.volume_coupling import (
     smoothing_share,
     smoothing_strain,
 )
-from grainlaw.mpm_core.layout import (
-    DENSITY,
-    DENSITY_REMAINDER,
-    FIRST_STATE,
-    LXX,
-    LXY,
-    LYX,
-    LYY,
-    NEIGHBOUR_DENSITY,
-    NEIGHBOUR_PRESSURE,
-    SXX,
-    SXY,
-    SYY,
-    SZZ,
-)
+from grainlaw.mpm_core.layout import DENSITY_REMAINDER, layout_of
 from grainlaw.mpm_core.parallel.blocks import points_of_block
 from grainlaw.mpm_core.parallel.work_sharing import chunk_ranges, next_chunk, threads_of
+from grainlaw.mpm_core.space import Space
 
 # Points that go through the parts of the pass together; they stay in the nearest cache.
 GROUP = 512
@@ -62,58 +49,68 @@ MAX_SIGNAL_SPEED, INTERNAL_WORK, MAX_INCREMENT, MAX_DIFFUSIVITY = range(4)
 REPORTS = 4
 
 
-@adaptable
-def couple_volumes(rows, first, last, duration, stiffness, coupling):  # type: ignore[no-untyped-def]
-    """The compressive strain that couples the volumes of points for a time [s], into `coupling`."""
-    lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-    sxx, syy, szz, density = rows[SXX], rows[SYY], rows[SZZ], rows[DENSITY]
-    neighbour_pressure, neighbour_density = rows[NEIGHBOUR_PRESSURE], rows[NEIGHBOUR_DENSITY]
-    for p in range(first, last):
-        motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-        share = smoothing_share(shear_strain_rate(motion), duration)
-        pressure = (sxx[p] + syy[p] + szz[p]) * -THIRD
-        smoothing = smoothing_strain(pressure, neighbour_pressure[p], stiffness[p - first], share)
-        closing = closing_strain(density[p], neighbour_density[p], share)
-        coupling[p - first] = smoothing if pressure > 0.0 else closing
+def make_couple_volumes(space: Space, precision: str) -> Callable[..., Any]:
+    """A function that finds the compressive strain that couples the volumes of points for a time [s]."""
+    layout, of_point = layout_of(space), kinematics(space, precision)
+    stress_at, motion = of_point.stress, of_point.motion
+    density_row, pressure_around, density_around = (
+        layout.density,
+        layout.neighbour_pressure,
+        layout.neighbour_density,
+    )
+
+    @adaptable
+    @named(f"{space.name}_{precision}_{CORE_MARK}")
+    def couple_volumes(rows, first, last, duration, stiffness, coupling):  # type: ignore[no-untyped-def]
+        density, neighbour_pressure, neighbour_density = rows[density_row], rows[pressure_around], rows[density_around]
+        for p in range(first, last):
+            share = smoothing_share(shear_strain_rate(motion(rows, p)), duration)
+            carried = pressure(stress_at(rows, p))
+            smoothing = smoothing_strain(carried, neighbour_pressure[p], stiffness[p - first], share)
+            closing = closing_strain(density[p], neighbour_density[p], share)
+            coupling[p - first] = smoothing if carried > 0.0 else closing
+
+    return in_precision(couple_volumes, precision)
 
 
-@adaptable
-def bring_forward(rows, first, last, dt, coupling, buffers, remainder):  # type: ignore[no-untyped-def]
-    """Rotate the stress and bring the density to the end of the step; returns the largest increment of the motion.
+def make_bring_forward(space: Space, precision: str) -> Callable[..., Any]:
+    """A function that turns the stress and brings the density to the end of the step.
 
-    `coupling` are compressive strains besides those of the motion. The step after this one has none, so that they bound
-    no step; they are only to be finite. The buffers receive the power of the old stress over mass, and the new volume
-    over mass. In single precision `remainder` is what singles leave out of the densities: slow strains change a density
-    by less than its rounding in a step, and would be lost.
+    It returns the largest volumetric increment of the motion. `coupling` are compressive strains besides those of the
+    motion. The step after this one has none, so that they bound no step; they are only to be finite. The buffers
+    receive the power of the old stress over mass, and the new volume over mass. In single precision `remainder` is what
+    singles leave out of the densities: slow strains change a density by less than its rounding in a step, and would be
+    lost.
     """
-    works, volumes = buffers
-    lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-    sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
-    density = rows[DENSITY]
-    largest = np.int64(0)
-    for p in range(first, last):
-        angle = 0.5 * dt * (lyx[p] - lxy[p])
-        half_increment = 0.5 * (dt * (lxx[p] + lyy[p]) - coupling[p - first])
-        xx, yy, xy = rotated(sxx[p], syy[p], sxy[p], angle)
-        rate_xx, rate_yy, rate_xy = at_end_of_step(lxx[p], lyy[p], 0.5 * (lxy[p] + lyx[p]), angle)
-        # rho (1 - h)/(1 + h), and both volumes, from a single division
-        grown, shrunk = 1.0 + half_increment, 1.0 - half_increment
-        inverse = 1.0 / (density[p] * grown * shrunk)
-        power = fused(xx, rate_xx, fused(yy, rate_yy, 2.0 * xy * rate_xy))
-        works[p - first] = power * (inverse * grown * shrunk)
-        volumes[p - first] = inverse * grown * grown
-        sxx[p], syy[p], sxy[p] = xx, yy, xy
-        # by which the density changes from rho to rho (1 - h)/(1 + h)
-        scale, strain = density[p] * (density[p] * shrunk * inverse), -2.0 * half_increment
-        if remainder is None:
-            density[p] = fused(strain, scale, density[p])
-        else:
-            change = fused(strain, scale, remainder[p])
-            new = density[p] + change
-            remainder[p] = change - (new - density[p])
-            density[p] = new
-        largest = max(largest, ordered_bits(abs(dt * (lxx[p] + lyy[p])) + 0.0 * coupling[p - first]))
-    return largest
+    of_point, density_row = kinematics(space, precision), layout_of(space).density
+    volumetric_rate, turned_power = of_point.volumetric_rate, of_point.turned_power
+
+    @adaptable
+    @named(f"{space.name}_{precision}_{CORE_MARK}")
+    def bring_forward(rows, first, last, dt, coupling, buffers, remainder):  # type: ignore[no-untyped-def]
+        works, volumes = buffers
+        density, largest = rows[density_row], np.int64(0)
+        for p in range(first, last):
+            increment = dt * volumetric_rate(rows, p)
+            half_increment = 0.5 * (increment - coupling[p - first])
+            # rho (1 - h)/(1 + h), and both volumes, from a single division
+            grown, shrunk = 1.0 + half_increment, 1.0 - half_increment
+            inverse = 1.0 / (density[p] * grown * shrunk)
+            works[p - first] = turned_power(rows, p, dt) * (inverse * grown * shrunk)
+            volumes[p - first] = inverse * grown * grown
+            # by which the density changes from rho to rho (1 - h)/(1 + h)
+            scale, strain = density[p] * (density[p] * shrunk * inverse), -2.0 * half_increment
+            if remainder is None:
+                density[p] = fused(strain, scale, density[p])
+            else:
+                change = fused(strain, scale, remainder[p])
+                new = density[p] + change
+                remainder[p] = change - (new - density[p])
+                density[p] = new
+            largest = max(largest, ordered_bits(abs(increment) + 0.0 * coupling[p - first]))
+        return largest
+
+    return in_precision(bring_forward, precision)
 
 
 @register_jitable
@@ -127,67 +124,77 @@ def remainder_in_single(storage):  # type: ignore[no-untyped-def]
     return storage[DENSITY_REMAINDER]
 
 
-def make_accumulate_shear_strain(row: int | None, mark: str) -> Callable[..., Any]:
+def make_accumulate_shear_strain(space: Space, row: int | None, precision: str, mark: str) -> Callable[..., Any]:
     """The loop over points that brings their shear strain forward, in this row; without one, nothing."""
     if row is None:
         return no_shear_strain
+    motion = kinematics(space, precision).motion
 
     @adaptable
     @named(mark)
     def accumulate_shear_strain(rows, first, last, dt):  # type: ignore[no-untyped-def]
-        lxx, lxy, lyx, lyy, shear_strain = rows[LXX], rows[LXY], rows[LYX], rows[LYY], rows[row]
+        shear_strain = rows[row]
         for p in range(first, last):
-            motion = SymmetricTensor(lxx[p], lyy[p], 0.0, 0.5 * (lxy[p] + lyx[p]), 0.0, 0.0)
-            shear_strain[p] += dt * shear_strain_rate(motion)
+            shear_strain[p] += dt * shear_strain_rate(motion(rows, p))
 
-    return accumulate_shear_strain
+    return in_precision(accumulate_shear_strain, precision)
 
 
-@adaptable
+@register_jitable
 def no_shear_strain(rows, first, last, dt):  # type: ignore[no-untyped-def]
     """Do nothing."""
 
 
-@register_jitable
-def work_done(rows, first, last, dt, buffers):  # type: ignore[no-untyped-def]
-    """The mean of the powers of the old and the new stress over mass, summed over the points [W/kg].
+def make_work_done(space: Space, precision: str) -> Callable[..., Any]:
+    """A function that sums up the mean of the powers of old and new stress over mass [W/kg].
 
-    In four sums side by side: an addition waits for the one before it.
+    In axisymmetry times the mass of each point, which is one elsewhere [W/rad].
     """
-    lxx, lxy, lyx, lyy = rows[LXX], rows[LXY], rows[LYX], rows[LYY]
-    sxx, syy, sxy = rows[SXX], rows[SYY], rows[SXY]
-    works, volumes = buffers
-    sums = filled(0.0)
-    for p in range(first, last, LANES):
-        k = p - first
-        angle = (0.5 * dt) * (quad_at(lyx, p) - quad_at(lxy, p))
-        xx, yy, xy = at_end_of_step(quad_at(lxx, p), quad_at(lyy, p), 0.5 * (quad_at(lxy, p) + quad_at(lyx, p)), angle)
-        power = quad_at(sxx, p) * xx + quad_at(syy, p) * yy + quad_at(sxy, p) * (xy + xy)
-        work = 0.5 * (quad_at(works, k) + power * quad_at(volumes, k))
-        sums = sums + (work if p + np.uint64(LANES) <= last else first_lanes(work, float(last - p), 0.0))
-    return total(sums)
+    power, mass_row, hoop, number = (
+        kinematics(space, precision).power,
+        layout_of(space).mass,
+        space.hoop,
+        PRECISIONS[precision],
+    )
+    half = number(0.5)
+
+    @register_jitable
+    @named(f"{space.name}_{precision}_{CORE_MARK}")
+    def work_done(rows, first, last, dt, buffers):  # type: ignore[no-untyped-def]
+        works, volumes = buffers
+        for p in range(first, last):
+            k = p - first
+            works[k] = half * (works[k] + power(rows, p, dt) * volumes[k])
+            if hoop:
+                works[k] *= rows[mass_row][p]
+        # In four sums side by side: an addition waits for the one before it.
+        sums = filled(0.0)
+        for p in range(first, last, LANES):
+            work = quad_at(works, p - first)
+            sums = sums + (work if p + np.uint64(LANES) <= last else first_lanes(work, float(last - p), 0.0))
+        return total(sums)
+
+    return work_done
 
 
 @cache
-def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str) -> Callable[..., Any]:
+def make_stress_pass(space: Space, law: PointwiseLaw, keeps_shear_strain: bool, precision: str) -> Callable[..., Any]:
     """The stress pass of a law; it takes the law's parameters as a plain tuple. The precision is that of the points.
 
     It couples the volumes of the points for a time `coupled_time` [s], zero for not in this step. Reports per block of
     points: the largest signal speed c + |v| [m/s], the work of the stress on the strain [J/m], the largest volumetric
     strain increment of the motion, NaN where anything is not finite, and the largest viscosity over density [m2/s].
     """
-    mark, number = f"{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}_{precision}", PRECISIONS[precision]
-    apply_law, find_stiffness = make_apply_law(law, mark), make_find_stiffness(law, mark)
-    largest_signal_speed, largest_diffusivity = (
-        make_largest_signal_speed(law, mark),
-        make_largest_diffusivity(law, mark),
-    )
-    after_state = FIRST_STATE + len(law.state._fields)
+    mark, number = f"{space.name}_{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}_{precision}", PRECISIONS[precision]
+    apply_law, find_stiffness = make_apply_law(space, law, mark), make_find_stiffness(space, law, mark)
+    largest_signal_speed = make_largest_signal_speed(space, law, mark)
+    largest_diffusivity = make_largest_diffusivity(space, law, mark)
+    after_state = layout_of(space).first_state + len(law.state._fields)
     all_rows = (0.0,) * (after_state + keeps_shear_strain)
-    shear_strain = make_accumulate_shear_strain(after_state if keeps_shear_strain else None, mark)
-    accumulate = in_precision(shear_strain, precision)
+    accumulate = make_accumulate_shear_strain(space, after_state if keeps_shear_strain else None, precision, mark)
     density_remainder = remainder_in_single if precision == "single" else no_remainder
-    forward, couple = in_precision(bring_forward, precision), in_precision(couple_volumes, precision)
+    forward, couple = make_bring_forward(space, precision), make_couple_volumes(space, precision)
+    work_done = make_work_done(space, precision)
 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(mark)
@@ -212,7 +219,7 @@ def make_stress_pass(law: PointwiseLaw, keeps_shear_strain: bool, precision: str
                     apply_law(rows, first, last, coupling, parameters, dt)
                     speed = largest_signal_speed(rows, first, last, parameters)
                     diffusivity = max(diffusivity, largest_diffusivity(rows, first, last, parameters, dt))
-                    work += work_done(rows, first, last, dt, buffers)
+                    work += work_done(rows, first, last, step, buffers)
                     fastest, largest = max(fastest, speed), max(largest, increment)
                 reports[block, MAX_SIGNAL_SPEED] = np.int64(fastest).view(np.float64)
                 reports[block, INTERNAL_WORK] = point_mass * dt * work

@@ -13,7 +13,6 @@ import numpy as np
 
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.kernels.shape_functions import SMALLEST_MOMENT_AT_WALL
-from grainlaw.mpm_core.layout import X, Y
 from grainlaw.mpm_core.simulation import Simulation
 
 
@@ -28,14 +27,15 @@ def limited(simulation: Simulation) -> dict[str, int]:
 
 
 def _without_stress(body: Body) -> int:
-    return int(((body.stress[0] == 0.0) & (body.stress[1] == 0.0)).sum())
+    return int((body.stress[:3] == 0.0).all(axis=0).sum())
 
 
 def _at_walls(simulation: Simulation, body: Body) -> int:
     grid, near = simulation.grid, np.zeros(body.count, np.bool_)
-    for axis, row in ((0, X), (1, Y)):
+    for axis in range(grid.space.axes):
         if axis not in simulation.periodic_axes:
-            distance = np.minimum(body.points[row] - grid.lower[axis], grid.upper[axis] - body.points[row])
+            coordinate = body.points[axis]
+            distance = np.minimum(coordinate - grid.lower[axis], grid.upper[axis] - coordinate)
             near |= distance < SMALLEST_MOMENT_AT_WALL * grid.cell_size
     return int(near.sum())
 

@@ -51,7 +51,7 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
             file.create_group(name).attrs.update(asdict(part))
         # Found anew from where points have drifted to, it would be another, and so what is withheld from its nodes.
         for name in ACTIVE_ROWS:
-            file.create_dataset(f"active/{name}", data=getattr(simulation.active, name))
+            file.create_dataset(f"active/{name}", data=getattr(simulation.active.columns, name))
         for number, body in enumerate(simulation.bodies):
             group = file.create_group(f"body/{number}")
             group.create_dataset("points", data=body.points)
@@ -133,7 +133,7 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     simulation.last_step = float(file.attrs["last_step"])
     simulation.signal_speed = float(file.attrs["signal_speed"])
     simulation.strain_rate = float(file.attrs["strain_rate"])
-    simulation.keep_to(active_between(*(numbers_of(file[f"active/{name}"]) for name in ACTIVE_ROWS)))
+    simulation.keep_to(active_between(simulation.grid, *(numbers_of(file[f"active/{name}"]) for name in ACTIVE_ROWS)))
     simulation.ledger = Ledger(**{name: float(value) for name, value in file["ledger"].attrs.items()})
     clock = file["clock"].attrs
     counts = {name: int(clock[name]) for name in ("next_frame", "next_history", "history_rows")}

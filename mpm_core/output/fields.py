@@ -12,7 +12,6 @@ from grainlaw.materials.law import Law
 from grainlaw.materials.tensor import deviatoric_stress, pressure
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.kernels.invariants import over_stress
-from grainlaw.mpm_core.layout import DENSITY, SXX, SXY, SYY, SZZ
 from grainlaw.mpm_core.output.frame import Field, Frame
 from grainlaw.mpm_core.scene.model import Scene
 
@@ -33,18 +32,29 @@ class FieldDeclaration:
 def _stress_invariant(function: Callable[[SymmetricTensor], float]) -> Callable[[Body], Array]:
     def compute(body: Body) -> Array:
         values = np.empty(body.count)
-        over_stress(function)(body.points, values)
+        over_stress(body.space, function)(body.points, values)
         return values
 
     return compute
 
 
-def _column(index: int) -> Callable[[Body], Array]:
-    return lambda body: body.points[index]
+def _stress_component(name: str) -> Callable[[Body], Array]:
+    """A component of the stress; zero where the space does not have it."""
+
+    def compute(body: Body) -> Array:
+        names = body.layout.stress_names
+        return body.stress[names.index(name)] if name in names else np.zeros(body.count)
+
+    return compute
 
 
 def _velocity(body: Body) -> Array:
-    return np.column_stack([body.velocity[0], body.velocity[1], np.zeros(body.count)])
+    return _in_3d(body.velocity)
+
+
+def _in_3d(components: Array) -> Array:
+    """Vectors as ParaView takes them, shape (n, 3); the third component is zero where the space has two axes."""
+    return np.pad(components.T, ((0, 0), (0, 3 - len(components))))
 
 
 def _solid_fraction(body: Body) -> Array:
@@ -52,7 +62,7 @@ def _solid_fraction(body: Body) -> Array:
 
 
 def _volumetric_strain_rate(body: Body) -> Array:
-    return np.asarray(-(body.velocity_gradient[0, 0] + body.velocity_gradient[1, 1]))
+    return -body.volumetric_rate
 
 
 FIELDS = {
@@ -67,13 +77,17 @@ FIELDS = {
             "accumulated shear strain, integral of sqrt(1/2 D_d:D_d) dt",
             lambda body: body.shear_strain,
         ),
-        FieldDeclaration("density", "kg/m3", "bulk density", _column(DENSITY)),
+        FieldDeclaration("density", "kg/m3", "bulk density", lambda body: body.density),
         FieldDeclaration("solid_fraction", "1", "bulk density over grain density", _solid_fraction, "grain_density"),
         FieldDeclaration("volumetric_strain_rate", "1/s", "-tr(D), compression-positive", _volumetric_strain_rate),
-        FieldDeclaration("stress_xx", "Pa", "sigma_xx, tension-positive", _column(SXX)),
-        FieldDeclaration("stress_yy", "Pa", "sigma_yy, tension-positive", _column(SYY)),
-        FieldDeclaration("stress_zz", "Pa", "sigma_zz, tension-positive", _column(SZZ)),
-        FieldDeclaration("stress_xy", "Pa", "sigma_xy", _column(SXY)),
+        FieldDeclaration("stress_xx", "Pa", "sigma_xx, tension-positive", _stress_component("xx")),
+        FieldDeclaration("stress_yy", "Pa", "sigma_yy, tension-positive", _stress_component("yy")),
+        FieldDeclaration(
+            "stress_zz", "Pa", "sigma_zz, tension-positive; in axisymmetry around the axis", _stress_component("zz")
+        ),
+        FieldDeclaration("stress_xy", "Pa", "sigma_xy", _stress_component("xy")),
+        FieldDeclaration("stress_yz", "Pa", "sigma_yz; zero but in 3D", _stress_component("yz")),
+        FieldDeclaration("stress_xz", "Pa", "sigma_xz; zero but in 3D", _stress_component("xz")),
     )
 }
 BODY_FIELD = "body"
@@ -125,8 +139,7 @@ def _is_available(name: str, laws: Sequence[Law]) -> bool:
 def make_frame(time: float, step: int, bodies: Sequence[Body], names: Sequence[str]) -> Frame:
     """A frame of all bodies, in the order in which their points were generated."""
     order = np.argsort(np.concatenate([body.ids for body in bodies]))
-    plane = np.concatenate([body.positions.T for body in bodies])
-    positions = np.column_stack([plane, np.zeros(len(plane))])
+    positions = np.concatenate([_in_3d(body.positions) for body in bodies])
     fields = tuple(_frame_field(name, bodies, order) for name in names)
     return Frame(time, step, positions[order], fields)
 

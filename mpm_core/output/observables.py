@@ -19,7 +19,7 @@ class PileShape:
     """Extent of the material [m].
 
     front_left, front_right   beyond each lies 1 % of the mass
-    runout                    half of the distance between the fronts
+    runout                    half of the distance between the fronts; in axisymmetry the radius of the right one
     height                    the level above which lies one cell's worth of material, above the floor of the domain
     center_of_mass_height     of all points, above the floor of the domain
     """
@@ -48,18 +48,20 @@ def interior_overfill(simulation: Simulation) -> InteriorOverfill:
 
 def pile_shape(bodies: Sequence[Body], floor: float, cell_size: float) -> PileShape:
     """Measure the shape of all bodies together."""
-    x, y = np.concatenate([body.positions for body in bodies], axis=1)
-    mass = np.concatenate([np.full(body.count, body.point_mass) for body in bodies])
+    space = bodies[0].space
+    positions = np.concatenate([body.positions for body in bodies], axis=1)
+    x, up = positions[0], positions[space.up]
+    mass = np.concatenate([body.masses for body in bodies])
     beyond = 0.5 * (1.0 - MASS_BETWEEN_FRONTS) * mass.sum()
     front_left = _level(x, mass, beyond)
     front_right = -_level(-x, mass, beyond)
     cell_mass = mass.sum() / len(mass) * _points_per_cell(bodies, cell_size)
     return PileShape(
-        runout=0.5 * (front_right - front_left),
+        runout=front_right if space.hoop else 0.5 * (front_right - front_left),
         front_left=front_left,
         front_right=front_right,
-        height=-_level(-y, mass, cell_mass) - floor,
-        center_of_mass_height=float(np.average(y, weights=mass)) - floor,
+        height=-_level(-up, mass, cell_mass) - floor,
+        center_of_mass_height=float(np.average(up, weights=mass)) - floor,
     )
 
 
@@ -74,5 +76,8 @@ def _level(coordinate: NDArray[np.float64], mass: NDArray[np.float64], share: fl
 
 
 def _points_per_cell(bodies: Sequence[Body], cell_size: float) -> float:
-    areas = [body.point_mass / body.initial_density for body in bodies]
-    return cell_size**2 / float(np.mean(areas))
+    """Points in a full cell, from the sizes of points at the start; in axisymmetry in one at the mean radius."""
+    space = bodies[0].space
+    volume = float(np.mean([body.masses.mean() / body.initial_density for body in bodies]))
+    radius = float(np.mean(np.concatenate([body.positions[0] for body in bodies]))) if space.hoop else 1.0
+    return cell_size**space.axes * radius / volume

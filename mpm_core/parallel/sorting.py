@@ -1,39 +1,48 @@
 """Keeping points sorted by the cell of their stencil: cache-friendly transfers, and stripes that threads can share.
 
-A stripe is some columns of stencils. Between two sorts no point may drift by more than one cell, so that a stripe
-reaches at most one column further on either side, plus its stencil; stripes of equal parity then share no node if each
-stripe is wider than a stencil. Stripes hold as many points as one another, and each parity has as many as two or four
-threads can share equally. They follow from where the points are alone, so that sums are the same for any number of
-threads.
+A stripe is some layers of stencils along x. Between two sorts no point may drift by more than one cell, so that a
+stripe reaches at most one layer further on either side, plus its stencil; stripes of equal parity then share no node
+if each stripe is wider than a stencil. Stripes hold as many points as one another, and each parity has as many as two
+or four threads can share equally. They follow from where the points are alone, so that sums are the same for any number
+of threads.
 """
+
+import math
 
 import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
 
+from grainlaw.materials import InputError
 from grainlaw.materials.compilation import named
 from grainlaw.mpm_core.kernels.shape_functions import Basis, first_node
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
-from grainlaw.mpm_core.layout import X, Y
 from grainlaw.mpm_core.parallel.blocks import EQUAL_SHARES
 
 LONGEST_DRIFT = 0.9
+# Cells that numbers of 32 bits count.
+MOST_CELLS = 2**31 - 2
 # Stripes come in multiples of the first, so that four threads have equal ranges of each parity; else of the second.
 STRIPES_IN_TURN = (2 * EQUAL_SHARES, EQUAL_SHARES)
 
 
 def sort_by_stencil(
-    points: NDArray[np.float64], origin: tuple[float, float], cell_size: float, basis: Basis
+    places: NDArray[np.float64], origin: tuple[float, ...], cell_size: float, basis: Basis
 ) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """The stable order of points by column and row of their stencil, and the first point of each stripe.
+    """The stable order of points at `places`, shape (axes, n) [m], and the first point of each stripe.
 
-    Orders are kept in 32 bits, as ids are: with many points they are what memory peaks with.
+    The order is that of their stencils, along the last axis first. Orders are kept in 32 bits, as ids are: with many
+    points they are what memory peaks with. Raises InputError for points that spread over more cells than that counts.
     """
-    if points.shape[1] == 0:
+    if places.shape[1] == 0:
         return np.empty(0, np.int32), np.zeros(1, np.int64)
-    places = points[X : Y + 1]
-    corners = tuple(places.min(axis=1).tolist()), tuple(places.max(axis=1).tolist())
-    return _counting_sort(points, corners, origin, cell_size, basis.offset, basis.width + 1)
+    ends = places.min(axis=1), places.max(axis=1)
+    low, high = ((((end - origin) / cell_size) - basis.offset).astype(np.int64) for end in ends)
+    extents = high - low + 1
+    if math.prod(extents.tolist()) > MOST_CELLS:
+        shape = " x ".join(map(str, extents))
+        raise InputError(f"grid.cell_size = {cell_size:g}: the points spread over {shape} cells, too many to be sorted")
+    return _counting_sort(places, tuple(low), tuple(extents), origin, cell_size, basis.offset, basis.width + 1)
 
 
 @njit(cache=True)
@@ -92,22 +101,21 @@ def _equal_parts(before, count):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 @named(CORE_MARK)
-def _counting_sort(points, corners, origin, cell_size, offset, narrowest):  # type: ignore[no-untyped-def]
-    count = points.shape[1]
-    x, y = points[X], points[Y]
-    (low_x, low_y), (high_x, high_y) = corners
-    first_x, first_y = first_node(low_x, low_y, origin, cell_size, offset)
-    last_x, last_y = first_node(high_x, high_y, origin, cell_size, offset)
-    columns, rows = last_x - first_x + 1, last_y - first_y + 1
+def _counting_sort(places, low, extents, origin, cell_size, offset, narrowest):  # type: ignore[no-untyped-def]
+    axes, count, cells = places.shape[0], places.shape[1], 1
+    for axis in range(axes):
+        cells *= extents[axis]
     keys = np.empty(count, np.int32)
-    starts = np.zeros(columns * rows + 1, np.int64)
+    starts = np.zeros(cells + 1, np.int64)
     for p in range(count):
-        i, j = first_node(x[p], y[p], origin, cell_size, offset)
-        keys[p] = (i - first_x) * rows + j - first_y
-        starts[keys[p] + 1] += 1
-    for key in range(columns * rows):
+        key = 0
+        for axis in range(axes):
+            key = key * extents[axis] + first_node(places[axis, p], origin[axis], cell_size, offset) - low[axis]
+        keys[p] = key
+        starts[key + 1] += 1
+    for key in range(cells):
         starts[key + 1] += starts[key]
-    stripe_starts = _stripe_starts(starts[::rows].copy(), narrowest)
+    stripe_starts = _stripe_starts(starts[:: cells // extents[0]].copy(), narrowest)
     order = np.empty(count, np.int32)
     for p in range(count):
         order[starts[keys[p]]] = p

@@ -12,11 +12,11 @@ from grainlaw.materials.errors import InputWarning, numbers_of
 from grainlaw.materials.law import Law
 from grainlaw.mpm_core.body import POINTS_AT_ONCE, Body
 from grainlaw.mpm_core.kernels.positions import put_density, put_positions
-from grainlaw.mpm_core.layout import DENSITY, FIRST_STATE, REMAINDERS, SXX, SYY, SZZ, VX, VY, allocate
+from grainlaw.mpm_core.layout import Layout, allocate, layout_of
 from grainlaw.mpm_core.scene.geostatic import vertical_stresses
 from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
 from grainlaw.mpm_core.scene.shapes import lattice, points_along_edge
-from grainlaw.mpm_core.space import PLANE_STRAIN, Space
+from grainlaw.mpm_core.space import Space
 from grainlaw.mpm_core.stepping.peak_memory import physical_memory
 
 # Bulk density of grains [kg/m3]: expanded perlite and foam beads are about as light.
@@ -34,8 +34,6 @@ def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
 
     Raises InputError for empty, overlapping, misplaced or too dense ones.
     """
-    if scene.in_space is not PLANE_STRAIN:
-        raise InputError(f"space = '{scene.space}' cannot be computed yet; allowed: 'plane_strain'")
     bodies: list[Body] = []
     positions = [_positions(scene, number, section) for number, section in enumerate(scene.body)]
     _refuse_overlap(scene, positions)
@@ -119,19 +117,22 @@ def _build(
     law = scene.law(section.material)
     parameters = scene.parameters(section.material)
     _check_density(law, parameters, section, name, scene.source)
-    remainders = len(REMAINDERS) if scene.precision == "single" else 0
-    rows = FIRST_STATE + len(law.state._fields) + keeps_shear_strain + remainders
+    space, layout = scene.in_space, layout_of(scene.in_space)
+    remainders = len(layout.remainders) if scene.precision == "single" else 0
+    rows = layout.first_state + len(law.state._fields) + keeps_shear_strain + remainders
     storage = allocate(rows, len(positions), scene.precision)
     points = storage[:, : len(positions)]
-    put_positions(points, positions.T)
-    points[VX], points[VY] = section.velocity
-    put_density(points, section.density)
-    points[SXX], points[SYY], points[SZZ] = normal_stresses(scene.in_space, section.initial_stress, vertical)
-    _warn_without_stiffness(law, parameters, points, f"{scene.source}: {name}")
+    put_positions(points, positions.T, space)
+    points[layout.velocities] = np.reshape(section.velocity, (-1, 1))
+    put_density(points, section.density, space)
+    points[layout.stress : layout.stress + 3] = normal_stresses(space, section.initial_stress, vertical)
+    _warn_without_stiffness(law, parameters, points[layout.stress : layout.stress + 3], f"{scene.source}: {name}")
     with numbers_of(law.name):
-        _initialise_state(law, parameters, points)
+        _initialise_state(law, parameters, points, layout)
     mass = section.density * volume_per_point(scene, section)
-    return Body(name, law, parameters, storage, len(positions), mass, first_id)
+    if space.hoop:
+        points[layout.mass], mass = point_masses(scene, section, positions), 1.0
+    return Body(name, law, parameters, space, storage, len(positions), mass, first_id)
 
 
 def volume_per_point(scene: Scene, section: BodySection) -> float:
@@ -189,12 +190,15 @@ def _check_density(law: Law, parameters: Any, section: BodySection, name: str, s
         )
 
 
-def _warn_without_stiffness(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64], where: str) -> None:
-    """Warn, as InputWarning, about a body of which points start below the pressure that the law asks for."""
+def _warn_without_stiffness(law: Law, parameters: tuple[float, ...], normal: NDArray[np.float64], where: str) -> None:
+    """Warn, as InputWarning, about a body of which points start below the pressure that the law asks for.
+
+    `normal` are the normal stresses of its points, shape (3, n) [Pa].
+    """
     if law.least_initial_pressure is None:
         return
     least = law.least_initial_pressure(parameters)
-    lowest = -float((points[SXX] + points[SYY] + points[SZZ]).max()) / 3.0
+    lowest = -float((normal[0] + normal[1] + normal[2]).max()) / 3.0
     if lowest < least * (1.0 - STRESS_ROUND_OFF):
         # Without numbers that depend on the grid: Python then says it once for the grids of a rehearsal.
         warnings.warn(
@@ -206,12 +210,12 @@ def _warn_without_stiffness(law: Law, parameters: tuple[float, ...], points: NDA
         )
 
 
-def _initialise_state(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64]) -> None:
+def _initialise_state(law: Law, parameters: tuple[float, ...], points: NDArray[np.float64], layout: Layout) -> None:
     """Fill the rows of the law's state, one call for each distinct initial stress of some points."""
-    states = points[FIRST_STATE : FIRST_STATE + len(law.state._fields)]
+    states = points[layout.first_state : layout.first_state + len(law.state._fields)]
     for start in range(0, points.shape[1], POINTS_AT_ONCE):
         block = slice(start, start + POINTS_AT_ONCE)
-        stresses = points[[SXX, SYY, SZZ, DENSITY], block].T
+        stresses = points[[*range(layout.stress, layout.stress + 3), layout.density], block].T
         distinct, which = np.unique(stresses, axis=0, return_inverse=True)
         found = [
             law.initial_state(SymmetricTensor(xx, yy, zz, 0.0, 0.0, 0.0), density, parameters)

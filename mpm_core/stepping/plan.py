@@ -76,7 +76,7 @@ def _plan(scene: Scene, threads: int) -> Plan:
     return Plan(
         laws=list(dict.fromkeys(body.law.name for body in simulation.bodies)),
         points=points,
-        cells=scene.grid.cells[0] * scene.grid.cells[1],
+        cells=math.prod(scene.grid.cells),
         active_nodes=simulation.active.nodes,
         bytes_per_point=sum(body.points.nbytes + body.ids.nbytes for body in simulation.bodies) / points,
         memory_bytes=memory_bytes,
@@ -103,7 +103,7 @@ def _steps(scene: Scene, signal_speed: float, stops: int) -> int:
 
 
 def _savings(simulation: Simulation) -> list[str]:
-    nodes = simulation.grid.shape[0] * simulation.grid.shape[1]
+    nodes = math.prod(simulation.grid.shape)
     found = [f"grid: {1.0 - simulation.active.nodes / nodes:.0%} of the nodes are not active at the start"]
     if simulation.scene.precision == "single":
         found += [f"single precision: {line}" for line in _in_single(simulation)]

@@ -18,27 +18,29 @@ WAKING speed/window. Waves of stress stop where they fall asleep; the kinetic en
 numerical dissipation.
 """
 
+import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.grid.active_nodes import ActiveNodes, find_active_nodes, no_active_nodes
-from grainlaw.mpm_core.grid.grid import COMPONENTS, MASS, Grid
+from grainlaw.mpm_core.grid.grid import BULK_COMPONENTS, COMPONENTS, Grid
 from grainlaw.mpm_core.grid.periodic import join_marks
-from grainlaw.mpm_core.kernels.grid_update import clear_nodes
+from grainlaw.mpm_core.kernels.grid_update import clear_bulk, clear_nodes
 from grainlaw.mpm_core.kernels.shape_functions import Basis
 from grainlaw.mpm_core.kernels.simd.registers import MOST_AT_ONCE
 from grainlaw.mpm_core.kernels.sleepers import (
     RING,
     copy_nodes,
+    first_node_is_marked,
     hold_sleepers,
-    stir_around_points,
-    stir_nodes,
-    touches_stirred,
+    mark_first_nodes,
+    nodes_to_wake,
+    spread,
 )
-from grainlaw.mpm_core.layout import X, Y
 from grainlaw.mpm_core.scene.model import SleepSection
 
 # The momentum withheld from a node that wakes it, over that of a full cell at the speed below which points fall asleep.
@@ -50,11 +52,11 @@ STEPS_PER_LOOK = 8
 class Sleep:
     """Which points sleep, and what they bring to the grid; `started` [s] is when the present window began.
 
-    positions    positions of each body's points at that time, in the order of generation, shape (2, n) [m]
-    withheld  momentum withheld from each node since then, shape (nodes along x, along y, 2) [kg/s]
-    nodes     what the sleeping points bring, as in `Grid.nodes`
-    held      whether sleeping points bring mass to a node, or to another copy of it across a periodic axis
-    full      mass of a full cell of the densest body at the start [kg/m]
+    positions    positions of each body's points at that time, in the order of generation, shape (axes, n) [m]
+    withheld     momentum withheld from each node since then, shape (nodes, axes) [kg m/s]
+    nodes, bulk  what the sleeping points bring, as in `Grid.nodes` and `Grid.bulk`
+    held         whether sleeping points bring mass to a node, or to another copy of it across a periodic axis
+    full         mass of a full cell of the densest body at the start [kg]; in axisymmetry at a radius of one cell
     """
 
     def __init__(
@@ -68,12 +70,14 @@ class Sleep:
         self.periodic_axes = periodic_axes
         # Before the first window: one that ends when that is to begin, in which every point came from far away.
         self.started = settings.start - settings.window
-        self.positions = [np.full((2, body.count), np.inf) for body in bodies]
-        self.withheld = np.zeros((*grid.shape, 2))
-        self.nodes = grid.empty_nodes()
+        self.positions = [np.full((grid.space.axes, body.count), np.inf) for body in bodies]
+        self.withheld = self._nothing_withheld()
+        self.nodes, self.bulk = grid.empty_nodes(), grid.empty_bulk()
         self.held = np.zeros(grid.shape, np.bool_)
         self.active = no_active_nodes(grid)
-        self.full = max(body.initial_density for body in bodies) * grid.cell_size**2
+        self.full = max(body.initial_density for body in bodies) * grid.cell_size ** (
+            3 if grid.space.hoop else grid.space.axes
+        )
 
     @property
     def has_sleepers(self) -> bool:
@@ -84,27 +88,33 @@ class Sleep:
         """Begin a window at a time [s]."""
         self.started = time
         # New memory rather than zeros in the old: occupied only where something is withheld.
-        self.withheld = np.zeros((*self.grid.shape, 2))
+        self.withheld = self._nothing_withheld()
         for body, positions in zip(self.bodies, self.positions, strict=True):
             positions[:, body.ids - body.first_id] = body.positions
 
     def lay_on_grid(self, active: ActiveNodes) -> None:
         """Let the active nodes start from what the sleeping points bring."""
-        copy_nodes(self.nodes, self.grid.nodes, self.grid.shape[1], active)
+        column = self.grid.shape[-1]
+        copy_nodes(self.nodes, self.grid.nodes, COMPONENTS, column, active.columns)
+        if len(self.bulk) > 0:
+            copy_nodes(self.bulk, self.grid.bulk, BULK_COMPONENTS, column, active.columns)
 
     def hold(self, active: ActiveNodes) -> None:
         """Hold the nodes with sleeping mass, if there are any."""
         if self.has_sleepers:
-            hold_sleepers(self.grid.nodes, self.held, self.withheld, active)
+            held, grid = self.held.reshape(-1), self.grid
+            hold_sleepers(grid.nodes, grid.components, held, self.withheld, grid.shape[-1], active.columns)
 
     def wake_up(self, active: ActiveNodes) -> bool:
         """Wake what is near an active node from which too much is withheld; returns whether anything woke."""
-        stirred = self._no_marks()
         waking = self.full * WAKING * self.speed
-        if not stir_nodes(self.withheld, waking * waking, active, stirred):
+        to_wake = nodes_to_wake(self.withheld, waking * waking, self.grid.shape[-1], active.columns)
+        if not to_wake.any():
             return False
+        stirred = spread(np.pad(to_wake.reshape(self.grid.shape), RING), RING, RING)
         self._join(stirred)
-        self.withheld[stirred[RING:-RING, RING:-RING]] = 0.0
+        on_grid = stirred[(slice(RING, -RING),) * stirred.ndim]
+        self.withheld[on_grid.reshape(-1)] = 0.0
         woke = False
         for body in self.bodies:
             wakes = self._touched(body.points_asleep, stirred)
@@ -117,11 +127,12 @@ class Sleep:
         """At the end of a window, send to sleep what rested; returns whether anything fell asleep."""
         if time - self.started < self.window:
             return False
-        stirred = self._no_marks()
+        stirred = np.zeros([nodes + 2 * RING for nodes in self.grid.shape], np.bool_)
         for body, positions in zip(self.bodies, self.positions, strict=True):
-            was = positions[:, body.ids - body.first_id]
-            displaced = np.hypot(*(body.positions - was)) > self.speed * (time - self.started)
-            stir_around_points(*body.positions[:, displaced], *self._stencil(), stirred)
+            ways = body.positions - positions[:, body.ids - body.first_id]
+            displaced = np.sqrt((ways**2).sum(axis=0)) > self.speed * (time - self.started)
+            mark_first_nodes(body.positions[:, displaced], *self._on_marks(stirred))
+        stirred = spread(stirred, RING, RING + self.basis.width - 1)
         self._join(stirred)
         fell = False
         for body in self.bodies:
@@ -136,15 +147,12 @@ class Sleep:
     def bring_sleepers(self) -> None:
         """Scatter anew what the sleeping points bring, after some woke or fell asleep."""
         clear_nodes(self.nodes, self.grid, self.active)
+        clear_bulk(self.bulk, self.grid, self.active)
         self.active = find_active_nodes([body.points_asleep for body in self.bodies], self.grid, self.basis, ())
         for body in self.bodies:
-            body.p2g_of_sleepers(self.nodes, self.grid)
-        self.held = self.nodes[MASS::COMPONENTS].reshape(self.grid.shape) > 0.0
+            body.p2g_of_sleepers(self.nodes, self.bulk, self.grid)
+        self.held = self.nodes[self.grid.components.mass :: COMPONENTS].reshape(self.grid.shape) > 0.0
         self._join(self.held)
-
-    def _no_marks(self) -> NDArray[np.bool_]:
-        """No node marked, nor any in `RING` rows beyond each side, which may be the inside across a periodic axis."""
-        return np.zeros([nodes + 2 * RING for nodes in self.grid.shape], np.bool_)
 
     def _join(self, marks: NDArray[np.bool_]) -> None:
         for axis in self.periodic_axes:
@@ -152,8 +160,16 @@ class Sleep:
 
     def _touched(self, points: NDArray[np.float64], stirred: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Whether any node of each point is marked."""
-        touched: NDArray[np.bool_] = touches_stirred(points[X], points[Y], *self._stencil(), stirred)
+        before = spread(stirred, self.basis.width - 1, 0)
+        touched: NDArray[np.bool_] = first_node_is_marked(points[: self.grid.space.axes], *self._on_marks(before))
         return touched
 
-    def _stencil(self) -> tuple[tuple[float, float], float, float, int]:
-        return self.grid.origin, self.grid.cell_size, self.basis.offset, self.basis.width
+    def _on_marks(self, marks: NDArray[np.bool_]) -> tuple[Any, ...]:
+        """What tells of a point where it is among marks that reach `RING` nodes beyond each side, and the marks.
+
+        Nodes beyond a side may be the inside, across a periodic axis.
+        """
+        return self.grid.origin, self.grid.cell_size, self.basis.offset, marks.shape, marks.reshape(-1)
+
+    def _nothing_withheld(self) -> NDArray[np.float64]:
+        return np.zeros((math.prod(self.grid.shape), self.grid.space.axes))

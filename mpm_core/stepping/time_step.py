@@ -4,12 +4,13 @@ Stability. Stress is updated with the new velocities, so an oscillation at omega
 arrangements of points, none is stiffer than a single one: the Rayleigh quotient of the grid, a sum over points in
 numerator and denominator, cannot exceed that of its worst term. The gradient of one point, over the second moment
 D = h^2/4 of quadratic splines, gives omega^2 = C/(rho D) with the largest stiffness C = e:d(sigma)/d(eps):e against
-strains e in the plane, so that
+the strains e that the space has, so that
 
     dt <= 2/omega = h/sqrt(C/rho) for quadratic splines.
 
-C exceeds rho c^2, which waves feel: against in-plane dilation it is 2 K + 2/3 G, for a fluid twice rho c^2. The ratio
-is taken from the law once. Cubic splines (D = h^2/3) have room to spare.
+C exceeds rho c^2, which waves feel: against in-plane dilation it is 2 K + 2/3 G, for a fluid twice rho c^2, and against
+dilation in three axes, or around an axis, too, three times. The ratio is taken from the law once. Cubic splines (D =
+h^2/3) have room to spare.
 
 Viscosity. A stress that follows the rate of strain damps an oscillation at a rate lambda = C'/(rho D), with the largest
 viscosity C' = e:d(sigma)/d(rate of eps):e, at most twice the viscosity nu rho against plane waves. Such a stress is of
@@ -34,8 +35,8 @@ from numpy.typing import NDArray
 from grainlaw.materials.errors import numbers_of
 from grainlaw.materials.law import Law
 from grainlaw.materials.tensor import SymmetricTensor, contraction, isotropic, scaled, trace
-from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.layout import DENSITY, LXX, LXY, LYX, LYY, SXX, SXY, SYY, SZZ
+from grainlaw.mpm_core.body import Body, tensor_of
+from grainlaw.mpm_core.space import Space
 
 # Of volume, in one adaptive step.
 LARGEST_STRAIN = 0.02
@@ -43,10 +44,14 @@ LARGEST_STRAIN = 0.02
 SMALLEST_SHARE = 1e-4
 
 _PROBE_STRAIN, _PROBE_DURATION = 1e-6, 1e-3
-_DILATION = SymmetricTensor(math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0, 0.0, 0.0)
+_PLANE_DILATION = SymmetricTensor(math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0, 0.0, 0.0)
+_DILATION = isotropic(math.sqrt(1.0 / 3.0))
 _SHEAR = SymmetricTensor(math.sqrt(0.5), -math.sqrt(0.5), 0.0, 0.0, 0.0, 0.0)
-# No isotropic elasticity is stiffer in the plane than a fluid, in terms of its rho c^2; the same holds of viscosities.
-_LARGEST_STIFFNESS_RATIO = 2.0
+
+
+def largest_stiffness_ratio(space: Space) -> float:
+    """Directions of stretch: no isotropic elasticity, nor viscosity, is stiffer than a fluid, over its rho c^2."""
+    return 3.0 if space.hoop else float(space.axes)
 
 
 class _Probe(NamedTuple):
@@ -60,12 +65,14 @@ class _Probe(NamedTuple):
 class SignalBounds(NamedTuple):
     """What a body's waves are to the grid.
 
-    wave_factor    by how much the grid is stiffer than a plane wave, in speed: sqrt(C/(rho c^2))
-    contact_speed  sound speed after a point has closed [m/s], 0 where an open point has it too
+    wave_factor      by how much the grid is stiffer than a plane wave, in speed: sqrt(C/(rho c^2))
+    contact_speed    sound speed after a point has closed [m/s], 0 where an open point has it too
+    viscous_factor   at most by how much the grid damps more than a plane wave is damped
     """
 
     wave_factor: float
     contact_speed: float
+    viscous_factor: float
 
     def speed(self, reported: float, fastest_point: float, viscous_speed: float) -> float:
         """The signal speed [m/s] that bounds the step.
@@ -73,29 +80,31 @@ class SignalBounds(NamedTuple):
         From the largest c + |v| and the largest |v| of the points, and their largest nu/h.
         """
         waves = self.wave_factor * max(reported, fastest_point + self.contact_speed)
-        diffusion = _LARGEST_STIFFNESS_RATIO * viscous_speed
+        diffusion = self.viscous_factor * viscous_speed
         return diffusion + math.hypot(diffusion, waves) if diffusion > 0.0 else waves
 
 
-def signal_bounds(law: Law, parameters: Any, density: float) -> SignalBounds:
-    """The bounds of a law for a bulk density [kg/m3], from its functions. Raises InputError where they fail."""
-    with numbers_of(law.name):
-        return _probed(law, parameters, density)
+def signal_bounds(body: Body) -> SignalBounds:
+    """The bounds of a body's law for its bulk density at the start. Raises InputError where its functions fail."""
+    with numbers_of(body.law.name):
+        return _probed(body.law, body.parameters, body.initial_density, body.space)
 
 
-def _probed(law: Law, parameters: Any, density: float) -> SignalBounds:
+def _probed(law: Law, parameters: Any, density: float, space: Space) -> SignalBounds:
     start = _Probe(isotropic(0.0), density, law.initial_state(isotropic(0.0), density, parameters))
     closed = _moved(law, parameters, start, isotropic(-LARGEST_STRAIN / 3.0))
     open_speed, closed_speed = law.sound_speed(*start, parameters), law.sound_speed(*closed, parameters)
     contact_speed = closed_speed if closed_speed > open_speed else 0.0
     modulus = closed.density * closed_speed * closed_speed
+    most = largest_stiffness_ratio(space)
     if not modulus > 0.0:
-        return SignalBounds(math.sqrt(_LARGEST_STIFFNESS_RATIO), contact_speed)
+        return SignalBounds(math.sqrt(most), contact_speed, most)
+    dilation = _PLANE_DILATION if most == 2.0 else _DILATION
     largest = max(
-        _stiffness(law, parameters, closed, scaled(mode, sign)) for mode in (_DILATION, _SHEAR) for sign in (1.0, -1.0)
+        _stiffness(law, parameters, closed, scaled(mode, sign)) for mode in (dilation, _SHEAR) for sign in (1.0, -1.0)
     )
-    ratio = min(max(largest / modulus, 1.0), _LARGEST_STIFFNESS_RATIO)
-    return SignalBounds(math.sqrt(ratio), contact_speed)
+    ratio = min(max(largest / modulus, 1.0), most)
+    return SignalBounds(math.sqrt(ratio), contact_speed, most)
 
 
 def _moved(law: Law, parameters: Any, start: _Probe, strain: SymmetricTensor) -> _Probe:
@@ -115,7 +124,7 @@ def _stiffness(law: Law, parameters: Any, start: _Probe, direction: SymmetricTen
 def what_sets_the_step(body: Body, reason: Callable[[Body], NDArray[np.float64]]) -> tuple[int, str]:
     """The point where a reason for small steps is strongest, and what it contributes to the bounds, in words."""
     point = int(np.argmax(reason(body)))
-    sound, speed, rate = sound_speeds(body)[point], np.hypot(*body.velocity)[point], strain_rates(body)[point]
+    sound, speed, rate = sound_speeds(body)[point], body.speed[point], strain_rates(body)[point]
     words = f"sound speed {sound:.3g} m/s, speed {speed:.3g} m/s, volumetric strain rate {rate:.3g} 1/s"
     diffusivity = largest_diffusivity(body)
     return point, words + (f", viscosity over density up to {diffusivity:.3g} m2/s" if diffusivity > 0.0 else "")
@@ -123,23 +132,22 @@ def what_sets_the_step(body: Body, reason: Callable[[Body], NDArray[np.float64]]
 
 def strain_rates(body: Body) -> NDArray[np.float64]:
     """Absolute rate of volumetric strain of each point [1/s]."""
-    rates: NDArray[np.float64] = np.abs(body.velocity_gradient[0, 0] + body.velocity_gradient[1, 1])
-    return rates
+    return np.abs(body.volumetric_rate)
 
 
 def signal_speeds(body: Body) -> NDArray[np.float64]:
     """Sound speed and speed of each point [m/s], in plain Python."""
-    speeds: NDArray[np.float64] = sound_speeds(body) + np.hypot(*body.velocity)
+    speeds: NDArray[np.float64] = sound_speeds(body) + body.speed
     return speeds
 
 
 def sound_speeds(body: Body) -> NDArray[np.float64]:
     """Sound speed of each point [m/s], in plain Python."""
-    rows = np.vstack([body.points[[SXX, SYY, SZZ, SXY, DENSITY]], body.states])
-    found = np.empty(body.count)
-    for point, (xx, yy, zz, xy, density, *state) in enumerate(rows.T.tolist()):
-        stress = SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0)
-        found[point] = body.law.sound_speed(stress, density, body.law.state(*state), body.parameters)
+    rows = np.vstack([body.stress, body.density, body.states])
+    found, components = np.empty(body.count), len(body.layout.stress_names)
+    for number, point in enumerate(rows.T.tolist()):
+        stress, density, state = tensor_of(point[:components]), point[components], point[components + 1 :]
+        found[number] = body.law.sound_speed(stress, density, body.law.state(*state), body.parameters)
     return found
 
 
@@ -148,9 +156,10 @@ def largest_diffusivity(body: Body) -> float:
     law, largest = body.law, 0.0
     if law.viscosity is None or not law.viscosity_bounds_step:
         return largest
-    rows = np.vstack([body.points[[SXX, SYY, SZZ, SXY, DENSITY, LXX, LYY, LXY, LYX]], body.states])
-    for xx, yy, zz, xy, density, lxx, lyy, lxy, lyx, *state in np.unique(rows, axis=1).T.tolist():
-        stress = SymmetricTensor(xx, yy, zz, xy, 0.0, 0.0)
-        rate = SymmetricTensor(lxx, lyy, 0.0, 0.5 * (lxy + lyx), 0.0, 0.0)
+    components = len(body.layout.stress_names)
+    rows = np.vstack([body.stress, body.strain_rate, body.density, body.states])
+    for point in np.unique(rows, axis=1).T.tolist():
+        stress, rate = tensor_of(point[:components]), tensor_of(point[components : 2 * components])
+        density, *state = point[2 * components :]
         largest = max(largest, law.viscosity(stress, rate, density, law.state(*state), body.parameters) / density)
     return largest

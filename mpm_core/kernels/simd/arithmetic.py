@@ -250,6 +250,17 @@ def narrowed(lanes: Any) -> Any:
 
 
 @register_jitable(forceinline=True)
+def unchanged(lanes: Any) -> Any:
+    """The same numbers."""
+    return lanes
+
+
+def rounding_to(precision: str) -> Callable[..., Any]:
+    """The function that turns doubles into numbers of a precision."""
+    return narrowed if precision == "single" else unchanged
+
+
+@register_jitable(forceinline=True)
 def scaled_sum(factor: Any, a: Any, b: Any) -> Any:
     """Return factor * a + b, rounded once; the factor may be a number."""
     return _fused(as_lanes(factor, a), a, b)  # type: ignore[call-arg]

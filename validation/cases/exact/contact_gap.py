@@ -33,7 +33,7 @@ class FeltAtOnce(WallClearance):
 
     def clearances(self) -> NDArray[np.float64]:
         """No clearance anywhere."""
-        return np.zeros((len(self.rows), max(self.grid.shape)))
+        return np.zeros_like(super().clearances())
 
 
 class WithoutClearances(Simulation):
@@ -42,8 +42,8 @@ class WithoutClearances(Simulation):
     def find_active_nodes(self) -> None:
         """Find the active nodes, and forget the points near walls."""
         super().find_active_nodes()
-        walls = self.wall_clearance.rows
-        self.wall_clearance = FeltAtOnce(walls, self.bodies, self.grid, self.basis, self.periodic_axes, self.threads)
+        layers = self.wall_clearance.layers
+        self.wall_clearance = FeltAtOnce(layers, self.bodies, self.grid, self.basis, self.periodic_axes, self.threads)
 
 
 def block(law: str, cell: float, lower: float, kind: type[Simulation], velocity: float = 0.0) -> Simulation:

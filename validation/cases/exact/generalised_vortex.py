@@ -107,7 +107,7 @@ def ring(cells: int, points_across_cell: int, angle: float) -> Simulation:
     storage = allocate(like.points.shape[0], count)
     storage[:, :count] = like.points[:, :1]
     mass = DENSITY * math.pi * (OUTER**2 - INNER**2) / count
-    body = Body("ring", like.law, like.parameters, storage, count, mass, first_id=0)
+    body = Body("ring", like.law, like.parameters, like.space, storage, count, mass, first_id=0)
     body.positions = places
     body.velocity_gradient = body.affine = velocity_gradient_at_start(places, angle)
     radius, _ = polar(places)
