@@ -24,9 +24,9 @@ from grainlaw.materials import InputError
 from grainlaw.mpm_core.output import hdf5_walk
 from grainlaw.mpm_core.output.hdf5_file import is_sealed
 
-# Processor time to go through a file [s], and per byte: a file of small datasets takes half as long.
-LONGEST_WALK = 3.0
-LONGEST_WALK_PER_BYTE = 1e-7
+# Processor time for one part of a file [s], and per byte of the file, which may be one list of names or chunks.
+LONGEST_STEP = 3.0
+LONGEST_STEP_PER_BYTE = 3e-8
 # A byte that is packed by deflate stands for 1032 at most.
 MOST_BYTES_PER_BYTE = 1032
 NUMBERS = "biuf"
@@ -50,7 +50,7 @@ def existing_hdf5(path: Path) -> Iterator[h5py.File]:
 def refuse_endless(path: Path) -> None:
     """Raises InputError for a file in which HDF5 would not come to an end or would crash; any other may pass."""
     size = path.stat().st_size
-    _walker.go_through(path, LONGEST_WALK + LONGEST_WALK_PER_BYTE * size)
+    _walker.go_through(path, LONGEST_STEP + LONGEST_STEP_PER_BYTE * size)
 
 
 def numbers_of(dataset: h5py.Dataset, rows: slice | tuple[()] = ()) -> NDArray[Any]:
@@ -92,7 +92,7 @@ class _Walker:
                 raise
             self.end()
         if code == -signal.SIGXCPU:
-            raise InputError(f"{path} is damaged: HDF5 comes to no end with it within {seconds:.1f} s")
+            raise InputError(f"{path} is damaged: HDF5 comes to no end with a part of it within {seconds:.1f} s")
         if code < 0:
             raise InputError(f"{path} is damaged: HDF5 crashes on it ({signal.Signals(-code).name})")
         raise RuntimeError(f"{hdf5_walk.__file__} ended with {code}")

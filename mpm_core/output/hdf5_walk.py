@@ -1,15 +1,16 @@
 """A process of its own that goes through HDF5 files, so that nobody else hangs or dies of a damaged one.
 
-A line of JSON asks for a file: its path and the processor time that it may take [s]; the answer is an empty line. A
-file that takes longer, or on which the library crashes, ends the process without an answer. Everything is touched that
-a reader may touch but the numbers of datasets: groups, links, attributes, the index of the chunks. What can be read of
-it is not judged here.
+A line of JSON asks for a file: its path and the processor time that each of its parts may take [s]; the answer is an
+empty line. A part that takes longer, or on which the library crashes, ends the process without an answer. Everything
+is touched that a reader may touch but the numbers of datasets: groups, links, attributes, the index of the chunks.
+What can be read of it is not judged here.
 """
 
 import json
 import math
 import resource
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
@@ -20,10 +21,11 @@ import h5py
 FINITE = Exception
 
 
-def walk(group: h5py.Group, seen: set[tuple[int, int]]) -> None:
-    """Touch all that lies in a group; a group that is linked into itself is gone through once."""
+def walk(group: h5py.Group, seen: set[tuple[int, int]], seconds: float) -> None:
+    """Touch all that lies in a group, but nothing twice, whatever links lead to it."""
     _touch_attributes(group)
     for name in _names(group):
+        limit_processor_time(seconds)
         with suppress(FINITE):
             found = group[name]
             place = h5py.h5o.get_info(found.id)
@@ -31,7 +33,7 @@ def walk(group: h5py.Group, seen: set[tuple[int, int]]) -> None:
                 continue
             seen.add((place.fileno, place.addr))
             if isinstance(found, h5py.Group):
-                walk(found, seen)
+                walk(found, seen, seconds)
             else:
                 _touch_attributes(found)
                 if isinstance(found, h5py.Dataset) and found.chunks is not None:
@@ -51,9 +53,8 @@ def _names(mapping: Any) -> Iterator[str]:
 
 def limit_processor_time(seconds: float) -> None:
     """End this process `seconds` of processor time from now."""
-    used = resource.getrusage(resource.RUSAGE_SELF)
     _, highest = resource.getrlimit(resource.RLIMIT_CPU)
-    wanted = math.ceil(used.ru_utime + used.ru_stime + seconds)
+    wanted = math.ceil(time.process_time() + seconds)
     resource.setrlimit(resource.RLIMIT_CPU, (wanted if highest < 0 else min(wanted, highest), highest))
 
 
@@ -64,7 +65,7 @@ def main() -> None:
         path, seconds = json.loads(line)
         limit_processor_time(seconds)
         with suppress(FINITE), h5py.File(path) as file:
-            walk(file, set())
+            walk(file, set(), seconds)
         print(flush=True)
 
 
