@@ -8,7 +8,6 @@ from grainlaw.face.display import html_table, text_table
 from grainlaw.materials.errors import nearest_name
 from grainlaw.mpm_core.scene import model
 from grainlaw.mpm_core.scene.file import read_content, with_values
-from grainlaw.mpm_core.scene.shapes import lattice
 from grainlaw.mpm_core.scene.shipped import scene_file, shipped_scenes
 
 SceneSource = model.Scene | Mapping[str, Any] | str | Path
@@ -101,5 +100,4 @@ def described(name: str, scene: model.Scene) -> list[str]:
 
 def _points(scene: model.Scene) -> int:
     """The number of material points at the start."""
-    grid = scene.grid
-    return sum(len(lattice(body.shape, grid.lower, grid.cell_size, body.points_per_cell)) for body in scene.body)
+    return sum(len(scene.lattice(body)) for body in scene.body)

@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, PlainValidator, field_validator, model_validator
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from grainlaw.mpm_core.scene.section import LARGEST_SPEED, Section, at_most
 from grainlaw.mpm_core.space import Space
@@ -25,7 +25,7 @@ class WallSection(Section):
         description="free_slip and no_slip hold the material at the wall; friction lets it leave and slide"
     )
     coefficient: float = Field(default=0.0, ge=0, description="Coulomb friction coefficient of a friction wall [1]")
-    velocity: Annotated[float | tuple[float, float, float], PlainValidator(_number_or_vector)] = Field(
+    velocity: Annotated[float | tuple[float, float, float], BeforeValidator(_number_or_vector)] = Field(
         default=0.0,
         description="at which a friction or no_slip wall slides along itself: a number, towards +x or +y; in 3D three "
         "components, the one across the wall zero [m/s]",

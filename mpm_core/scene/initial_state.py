@@ -15,7 +15,7 @@ from grainlaw.mpm_core.kernels.positions import put_density, put_positions
 from grainlaw.mpm_core.layout import Layout, allocate, layout_of
 from grainlaw.mpm_core.scene.geostatic import vertical_stresses
 from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
-from grainlaw.mpm_core.scene.shapes import lattice, points_along_edge
+from grainlaw.mpm_core.scene.shapes import points_along_edge
 from grainlaw.mpm_core.space import Space
 from grainlaw.mpm_core.stepping.peak_memory import physical_memory
 
@@ -50,7 +50,7 @@ def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
 
 def _positions(scene: Scene, number: int, section: BodySection) -> NDArray[np.float64]:
     _refuse_absurd_size(scene, number, section)
-    positions = lattice(section.shape, scene.grid.lower, scene.grid.cell_size, section.points_per_cell)
+    positions = scene.lattice(section)
     if len(positions) == 0:
         raise InputError(f"body.{number}: the shape holds no point; it is smaller than a cell of the grid")
     outside = ((positions < scene.grid.lower) | (positions > scene.grid.upper)).any(axis=1)

@@ -14,6 +14,7 @@ from grainlaw.materials.law import Law
 from grainlaw.mpm_core.scene.boundary import BoundarySection
 from grainlaw.mpm_core.scene.errors import described
 from grainlaw.mpm_core.scene.file import read_content
+from grainlaw.mpm_core.scene.outline import Points
 from grainlaw.mpm_core.scene.presets import with_settings_for_accuracy
 from grainlaw.mpm_core.scene.section import (
     LARGEST_DENSITY,
@@ -25,7 +26,7 @@ from grainlaw.mpm_core.scene.section import (
     Vector,
     at_most,
 )
-from grainlaw.mpm_core.scene.shapes import AnyShape, refused_mesh
+from grainlaw.mpm_core.scene.shapes import AnyShape, lattice, refused_mesh
 from grainlaw.mpm_core.scene.space_rules import fitted_to_space
 from grainlaw.mpm_core.space import SPACES, Space
 
@@ -187,6 +188,11 @@ class BodySection(Section):
 
     material: str = Field(description="name of a [material.NAME] table")
     shape: AnyShape = Field(description="rectangle, disc, polygon or mesh; in 3D box, cylinder, cone, sphere or mesh")
+    clip: bool = Field(
+        default=False,
+        description="leave out what of the shape lies outside the domain, for halves and quarters beside planes of "
+        "symmetry; by default that is refused",
+    )
     density: float = Field(gt=0, le=LARGEST_DENSITY, description="initial bulk density [kg/m3]")
     points_per_cell: Literal[1, 4, 8, 9, 16, 25, 27, 36, 64] = Field(
         default=4,
@@ -286,6 +292,14 @@ class Scene(Section):
     def left_is_axis(self) -> bool:
         """Whether the left side is the axis of an axisymmetric scene, which acts as a free-slip wall."""
         return self.in_space.hoop and self.grid.lower[0] == 0.0
+
+    def lattice(self, body: BodySection) -> Points:
+        """The places of a body's points at the start, shape (n, axes) [m]."""
+        grid = self.grid
+        points = lattice(body.shape, grid.lower, grid.cell_size, body.points_per_cell)
+        if not body.clip:
+            return points
+        return points[((points > grid.lower) & (points < grid.upper)).all(axis=1)]
 
     def wall_velocity(self, side: str) -> tuple[float, ...]:
         """The velocity of a side along each axis [m/s]."""

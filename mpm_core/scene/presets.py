@@ -39,7 +39,7 @@ def with_settings_for_accuracy(content: Any) -> Any:
             f"accuracy = '{content['accuracy']}' was measured in plane strain, in no other space; {INSTEAD}"
         )
     grid, time = content.get("grid"), content.get("time")
-    boxes, materials = _boxes(content.get("body")), _materials(content)
+    boxes, materials = _boxes(content.get("body"), grid), _materials(content)
     if not isinstance(grid, Mapping) or not isinstance(time, Mapping) or not boxes or not materials:
         return content
     stated = {name: _resolutions(name, table) for name, table in materials.items()}
@@ -124,14 +124,20 @@ def _with_points(body: Mapping[str, Any], points_per_cell: int) -> dict[str, Any
     return {**body, "points_per_cell": body.get("points_per_cell") or points_per_cell}
 
 
-def _boxes(bodies: Any) -> list[tuple[float, float]]:
+def _boxes(bodies: Any, grid: Mapping[str, Any]) -> list[tuple[float, float]]:
     """Width and height of the bodies' bounding boxes [m]; none if a shape is not well-formed."""
     try:
-        shapes = [TypeAdapter(AnyShape).validate_python(body["shape"]) for body in bodies]
-        corners = [shape.bounds() for shape in shapes]
-        return [(float(upper[0] - lower[0]), float(upper[1] - lower[1])) for lower, upper in corners]
+        return [_box(body, grid) for body in bodies]
     except (ValidationError, KeyError, TypeError, ValueError):
         return []
+
+
+def _box(body: Mapping[str, Any], grid: Mapping[str, Any]) -> tuple[float, float]:
+    lower, upper = TypeAdapter(AnyShape).validate_python(body["shape"]).bounds()
+    if body.get("clip") is True:
+        lower = tuple(map(max, lower, grid.get("lower", (0.0, 0.0))))
+        upper = tuple(map(min, upper, grid["upper"]))
+    return float(upper[0] - lower[0]), float(upper[1] - lower[1])
 
 
 def _largest_cell(boxes: Iterable[tuple[float, float]], resolution: Resolution) -> float:
