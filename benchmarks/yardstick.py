@@ -15,6 +15,7 @@ frames.
 It is a program to be timed, not one to be used: it loses energy with every step, as APIC does.
 """
 
+import math
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -159,7 +160,7 @@ class Yardstick:
 
     def critical_time_step(self) -> float:
         """The largest stable step [s]: a cell over the fastest signal."""
-        return self.h / max(self.signal_speed, float(np.hypot(*self.gravity) * self.h) ** 0.5)
+        return self.h / max(self.signal_speed, (math.hypot(*self.gravity) * self.h) ** 0.5)
 
     def step(self, dt: float) -> None:
         """Advance by dt [s]; as in the library, forces act from the middle of the last step to that of this."""

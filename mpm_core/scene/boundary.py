@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
-from grainlaw.mpm_core.scene.section import LARGEST_SPEED, Section, at_most
+from grainlaw.mpm_core.scene.section import LARGEST_SPEED, Section, refuse_beyond
 from grainlaw.mpm_core.space import Space
 
 
@@ -14,7 +14,7 @@ def _number_or_vector(value: Any) -> float | tuple[float, ...]:
     are_numbers = all(type(entry) in (int, float) and math.isfinite(entry) for entry in entries)
     if not are_numbers or (isinstance(value, list | tuple) and len(entries) != 3):
         raise ValueError(f"{value!r:.60} is no velocity; allowed: a number, in 3D three numbers")
-    at_most(entries, LARGEST_SPEED, "m/s")
+    refuse_beyond(entries, LARGEST_SPEED, "m/s")
     return tuple(map(float, entries)) if isinstance(value, list | tuple) else float(value)
 
 

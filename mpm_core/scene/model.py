@@ -24,7 +24,7 @@ from grainlaw.mpm_core.scene.section import (
     LARGEST_SPEED,
     Section,
     Vector,
-    at_most,
+    refuse_beyond,
 )
 from grainlaw.mpm_core.scene.shapes import AnyShape, lattice, refused_mesh
 from grainlaw.mpm_core.scene.space_rules import fitted_to_space
@@ -44,7 +44,7 @@ class GridSection(Section):
     upper: Vector = Field(description="upper corner of the domain [m]; a whole number of cells from `lower`")
 
     @property
-    def cells(self) -> Any:
+    def cells(self) -> tuple[int, ...]:
         """Number of cells along each axis."""
         return tuple(round((high - low) / self.cell_size) for low, high in zip(self.lower, self.upper, strict=True))
 
@@ -208,7 +208,8 @@ class BodySection(Section):
     @field_validator("velocity")
     @classmethod
     def _velocity_has_a_bound(cls, velocity: Vector) -> Vector:
-        return at_most(velocity, LARGEST_SPEED, "m/s")
+        refuse_beyond(velocity, LARGEST_SPEED, "m/s")
+        return velocity
 
 
 # More frames, or rows of the history, are a slip of the unit rather than a wish.
@@ -276,7 +277,8 @@ class Scene(Section):
     @field_validator("gravity")
     @classmethod
     def _gravity_has_a_bound(cls, gravity: Vector) -> Vector:
-        return at_most(gravity, LARGEST_GRAVITY, "m/s2")
+        refuse_beyond(gravity, LARGEST_GRAVITY, "m/s2")
+        return gravity
 
     @property
     def source(self) -> str:

@@ -124,15 +124,15 @@ def _with_points(body: Mapping[str, Any], points_per_cell: int) -> dict[str, Any
     return {**body, "points_per_cell": body.get("points_per_cell") or points_per_cell}
 
 
-def _boxes(bodies: Any, grid: Mapping[str, Any]) -> list[tuple[float, float]]:
+def _boxes(bodies: Any, grid: Any) -> list[tuple[float, float]]:
     """Width and height of the bodies' bounding boxes [m]; none if a shape is not well-formed."""
     try:
         return [_box(body, grid) for body in bodies]
-    except (ValidationError, KeyError, TypeError, ValueError):
+    except (ValidationError, AttributeError, KeyError, TypeError, ValueError):
         return []
 
 
-def _box(body: Mapping[str, Any], grid: Mapping[str, Any]) -> tuple[float, float]:
+def _box(body: Mapping[str, Any], grid: Any) -> tuple[float, float]:
     lower, upper = TypeAdapter(AnyShape).validate_python(body["shape"]).bounds()
     if body.get("clip") is True:
         lower = tuple(map(max, lower, grid.get("lower", (0.0, 0.0))))

@@ -1,6 +1,7 @@
 """What the tables of a scene file are made of."""
 
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Iterable
+from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -16,15 +17,11 @@ class Section(BaseModel):
 
 
 # As many components as the space of the scene has axes, which `space_rules` sees to.
-if TYPE_CHECKING:
-    Vector = Any  # until the core takes vectors of any length
-else:
-    Vector = Annotated[tuple[float, ...], Field(strict=False, min_length=2, max_length=3)]
+Vector = Annotated[tuple[float, ...], Field(strict=False, min_length=2, max_length=3)]
 
 
-def at_most(vector: Vector, largest: float, unit: str) -> Vector:
-    """The vector. Raises ValueError if one of its components is larger, or negative and larger."""
+def refuse_beyond(vector: Iterable[float], largest: float, unit: str) -> None:
+    """Raises ValueError if one of its components is larger, or negative and larger."""
     for component in vector:
         if abs(component) > largest:
             raise ValueError(f"{component:g} {unit} is out of bounds; allowed: {-largest:g} to {largest:g} {unit}")
-    return vector
