@@ -9,8 +9,9 @@ from unittest import mock
 import meshio
 import numpy as np
 import tomli_w
+import trimesh
 from grains_for_tests import WRITERS, block
-from scenes_for_tests import BLOCK, COLUMN, MU_I_LC, changed
+from scenes_for_tests import BLOCK, COLUMN, CUBE, MU_I_LC, RING, changed
 
 from grainlaw.materials.calibration.data import read_data
 from grainlaw.materials.element.catalogue import get_element_test
@@ -36,6 +37,7 @@ from grainlaw.mpm_core.output.quantities import write_quantities
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.output.summary import FinalState, RunSummary, write_summary
 from grainlaw.mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame
+from grainlaw.mpm_core.scene.mesh_file import SURFACE_FORMATS
 from grainlaw.mpm_core.stepping import run
 from grainlaw.validation.grains.observation import write_observation
 from grainlaw.validation.grains.observe import observe_folder
@@ -260,6 +262,77 @@ TWO = changed(
     },
 )
 
+SOLIDS = changed(
+    CUBE,
+    {
+        "gravity": [0.0, 0.0, -9.81],
+        "grid.lower": [0.0, 0.0, 0.0],
+        "boundary": {
+            **{"front": "periodic", "back": "periodic"},
+            "bottom": {"kind": "friction", "coefficient": 0.5, "velocity": [1.0, 0.0, 0.0]},
+        },
+        "body": [
+            CUBE["body"][0] | {"initial_stress": {"kind": "geostatic", "horizontal_ratio": 0.5}},
+            CUBE["body"][0]
+            | {
+                "shape": {
+                    "kind": "cone",
+                    "center": [0.5, 0.4, 0.4],
+                    "radius": 0.15,
+                    "height": 0.2,
+                    "upper_radius": 0.1,
+                },
+                "initial_stress": {"kind": "geostatic", "surcharge": 10.0},
+                "points_per_cell": 27,
+                "velocity": [0.1, 0.0, 0.0],
+            },
+            CUBE["body"][0]
+            | {
+                "shape": {
+                    "kind": "cylinder",
+                    "center": [0.1, 0.0, 0.1],
+                    "radius": 0.1,
+                    "height": 0.8,
+                    "axis": [0, 1, 0],
+                }
+            },
+            CUBE["body"][0] | {"shape": {"kind": "sphere", "center": [1.0, 0.4, 0.2], "radius": 0.2}, "clip": True},
+        ],
+    },
+)
+ROUND = changed(
+    RING,
+    {
+        "grid.lower": [0.1, 0.0],
+        "boundary": {"left": {"kind": "no_slip", "velocity": 0.1}, "bottom": {"kind": "friction", "coefficient": 0.5}},
+        "body.0.clip": True,
+        "body.0.initial_stress": {"kind": "geostatic", "horizontal_ratio": 0.5},
+    },
+)
+TETRAHEDRON = np.array([[0.3, 0.2, 0.1], [0.7, 0.2, 0.1], [0.3, 0.6, 0.1], [0.3, 0.2, 0.5]])
+
+
+def _solid(name: str) -> Callable[[Path], Path]:
+    """A surface or, in a format for volumes, a tetrahedron."""
+
+    def write(folder: Path) -> Path:
+        path = folder / name
+        faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+        if path.suffix in SURFACE_FORMATS:
+            trimesh.Trimesh(TETRAHEDRON, faces).export(path)
+        else:
+            meshio.Mesh(TETRAHEDRON, [("tetra", np.arange(4)[None])]).write(path)
+        return path
+
+    return write
+
+
+def read_solid(path: Path) -> object:
+    """As the shape of a body in 3D."""
+    scene = path.parent / "scene.toml"
+    scene.write_text(tomli_w.dumps(changed(CUBE, {"body.0.shape": {"kind": "mesh", "file": path.name}})))
+    return set_up(scene)
+
 
 def subjects() -> dict[str, Subject]:
     """All kinds of input."""
@@ -278,6 +351,8 @@ def subjects() -> dict[str, Subject]:
     clay = get_material("modified_cam_clay")
     return {
         "scene": Subject({"many": _scene(MANY), "two": _scene(TWO), "column": _scene(COLUMN)}, set_up),
+        "scene in space": Subject({"solids": _scene(SOLIDS), "round": _scene(ROUND)}, set_up),
+        "solid": Subject({name: _solid(name) for name in ("a.stl", "a.ply", "a.obj", "a.off", "a.vtk")}, read_solid),
         "parameters": Subject({law: _parameters(law) for law in laws}, read_parameters),
         "data": Subject(
             {"one": _text("data.csv", DATA), "tests": _text("data.csv", DATA_OF_TESTS)},

@@ -50,6 +50,38 @@ BLOCK = {
     ],
 }
 
+# An elastic cube of 4 x 4 x 4 cells on the floor of a box, under its weight.
+CUBE = {
+    "title": "cube",
+    "space": "3d",
+    "grid": {"cell_size": 0.1, "upper": [1.0, 0.8, 0.6]},
+    "time": {"end": 0.1},
+    "material": {"linear_elastic": ELASTIC},
+    "body": [
+        {
+            "material": "linear_elastic",
+            "shape": {"kind": "box", "lower": [0.3, 0.2, 0.0], "upper": [0.7, 0.6, 0.4]},
+            "density": 1000.0,
+        }
+    ],
+}
+
+# An elastic cylinder around the axis.
+RING = {
+    "title": "ring",
+    "space": "axisymmetric",
+    "grid": {"cell_size": 0.1, "upper": [1.0, 0.8]},
+    "time": {"end": 0.1},
+    "material": {"linear_elastic": ELASTIC},
+    "body": [
+        {
+            "material": "linear_elastic",
+            "shape": {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [0.5, 0.4]},
+            "density": 1000.0,
+        }
+    ],
+}
+
 # A column of mu(I)-LC, 12 cells wide and 32 high, that falls apart quickly.
 COLUMN = {
     "title": "column",

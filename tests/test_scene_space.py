@@ -5,42 +5,15 @@ import tomllib
 
 import numpy as np
 import pytest
-from scenes_for_tests import BLOCK, ELASTIC, changed
+from scenes_for_tests import BLOCK, CUBE, RING, changed
 
 from grainlaw.materials import InputError
 from grainlaw.mpm_core import Scene
 from grainlaw.mpm_core.scene.geostatic import vertical_stresses
 from grainlaw.mpm_core.scene.initial_state import build_bodies, normal_stresses, point_masses
 from grainlaw.mpm_core.space import AXISYMMETRIC, PLANE_STRAIN, THREE_D
+from grainlaw.mpm_core.stepping.run import built_simulation
 
-CUBE = {
-    "title": "cube",
-    "space": "3d",
-    "grid": {"cell_size": 0.1, "upper": [1.0, 0.8, 0.6]},
-    "time": {"end": 0.1},
-    "material": {"linear_elastic": ELASTIC},
-    "body": [
-        {
-            "material": "linear_elastic",
-            "shape": {"kind": "box", "lower": [0.3, 0.2, 0.0], "upper": [0.7, 0.6, 0.4]},
-            "density": 1000.0,
-        }
-    ],
-}
-RING = {
-    "title": "ring",
-    "space": "axisymmetric",
-    "grid": {"cell_size": 0.1, "upper": [1.0, 0.8]},
-    "time": {"end": 0.1},
-    "material": {"linear_elastic": ELASTIC},
-    "body": [
-        {
-            "material": "linear_elastic",
-            "shape": {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [0.5, 0.4]},
-            "density": 1000.0,
-        }
-    ],
-}
 GRIPS = {"kind": "friction", "coefficient": 0.3}
 WEIGHT = 1000.0 * 9.81
 
@@ -179,6 +152,12 @@ def test_a_bad_scene_is_refused_in_one_line(content, changes, message):
     assert "\n" not in line
     assert len(line) < 400
     assert not re.search(r"Input should|should have at|valid (number|list|dictionary)|extract", line)
+
+
+def test_more_cells_than_memory_are_refused_in_3d():
+    scene = Scene.from_dict(changed(CUBE, {"grid.upper": [1e4, 8e3, 6e3], "body.0.points_per_cell": 1}), "scene.toml")
+    with pytest.raises(InputError, match=r"^scene\.toml: grid: 100000 x 80000 x 60000 cells do not fit into memory$"):
+        built_simulation(scene, 1)
 
 
 def test_none_is_no_ratio_in_plane_strain():

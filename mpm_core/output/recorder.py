@@ -49,7 +49,7 @@ class Recorder:
     def shape(self) -> PileShape:
         """The present shape of the material."""
         simulation = self.simulation
-        return pile_shape(simulation.bodies, simulation.grid.lower[1], simulation.grid.cell_size)
+        return pile_shape(simulation.bodies, simulation.grid.lower[simulation.space.up], simulation.grid.cell_size)
 
     def record(self, wall_time: float) -> None:
         """Write whatever is due after a step."""

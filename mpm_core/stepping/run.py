@@ -1,5 +1,6 @@
 """The time loop: from a scene to a run's folder."""
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -99,8 +100,8 @@ def built_simulation(scene: Scene, threads: int) -> Simulation:
     except InputError as error:
         raise InputError(f"{scene.source}: {error}") from error
     except MemoryError as error:
-        across, up = map(float, scene.grid.cells)
-        raise InputError(f"{scene.source}: grid: {across:.12g} x {up:.12g} cells do not fit into memory") from error
+        cells = " x ".join(f"{float(count):.12g}" for count in scene.grid.cells)
+        raise InputError(f"{scene.source}: grid: {cells} cells do not fit into memory") from error
 
 
 def _advance(simulation: Simulation, recorder: Recorder, started: float, progress: Progress | None) -> float:
@@ -141,7 +142,7 @@ def _summary(simulation: Simulation, recorder: Recorder, wall_time: float, compi
         scene=scene.title,
         material=", ".join(dict.fromkeys(body.law.name for body in simulation.bodies)),
         points=points,
-        cells=scene.grid.cells[0] * scene.grid.cells[1],
+        cells=math.prod(scene.grid.cells),
         steps=simulation.steps,
         simulated_time=simulation.time,
         wall_time=wall_time,
