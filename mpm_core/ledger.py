@@ -12,8 +12,8 @@ class Ledger:
     half a step.
 
     `volume_projection` is the part of the potential energy that points gained by being moved apart. `wall_friction` is
-    the part of `wall_work` that sliding dissipates. The initial elastic energy is NaN where a law does not state its
-    energy.
+    the part of `wall_work` that sliding dissipates, `obstacle_friction` that of `obstacle_work`. The initial elastic
+    energy is NaN where a law does not state its energy.
     """
 
     kinetic: float
@@ -23,6 +23,8 @@ class Ledger:
     internal_work: float = 0.0
     wall_work: float = 0.0
     wall_friction: float = 0.0
+    obstacle_work: float = 0.0
+    obstacle_friction: float = 0.0
     volume_projection: float = 0.0
     rise_to_come: float = 0.0
     work_to_come: float = 0.0
@@ -43,7 +45,8 @@ class Ledger:
     def numerical_dissipation(self) -> float:
         """What is left of the balance: energy that transfers and time integration took (or gave, if negative)."""
         given = self.initial_kinetic + self.volume_projection
-        return given - self.kinetic - self.potential - self.internal_work - self.wall_work
+        taken = self.internal_work + self.wall_work + self.obstacle_work
+        return given - self.kinetic - self.potential - taken
 
     @property
     def kinetic_at_end(self) -> float:

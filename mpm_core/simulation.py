@@ -23,6 +23,7 @@ from grainlaw.mpm_core.kernels.volume_coupling import STEPS_PER_COUPLING
 from grainlaw.mpm_core.kernels.wall_clearance import WallClearance
 from grainlaw.mpm_core.kernels.walls import Wall, WallKind, active_layers, hold_at_walls
 from grainlaw.mpm_core.ledger import Ledger
+from grainlaw.mpm_core.obstacles.obstacles import Obstacles
 from grainlaw.mpm_core.output.fields import chosen_fields
 from grainlaw.mpm_core.parallel.sorting import LONGEST_DRIFT
 from grainlaw.mpm_core.parallel.threads import use_threads
@@ -69,6 +70,7 @@ class Simulation:
         initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
         self.walls = _walls(scene)
+        self.obstacles = Obstacles(())
         self.body_force: BodyForce | None = None
         self.held_nodes = np.empty(0, np.int64)
         self.time = 0.0
@@ -146,12 +148,23 @@ class Simulation:
         """Solve the momentum equation on the nodes, then walls, held nodes and sleepers have their say."""
         kick = 0.5 * (self.last_step + dt)
         update_nodes(self.grid, self.active, self.scene.gravity, kick, couples_volumes)
-        taken = hold_at_walls(self.grid, self.wall_clearance.layers, self.wall_clearance.clearances(), dt)
-        self.ledger.wall_work += taken.work
-        self.ledger.wall_friction += taken.friction
+        self._hold_at_walls(dt)
+        if self.obstacles.present:
+            self._touch_obstacles(dt)
         hold_nodes(self.grid, self.held_nodes)
         if self.sleep is not None:
             self.sleep.hold(self.active)
+
+    def _hold_at_walls(self, dt: float) -> None:
+        taken = hold_at_walls(self.grid, self.wall_clearance.layers, self.wall_clearance.clearances(), dt)
+        self.ledger.wall_work += taken.work
+        self.ledger.wall_friction += taken.friction
+
+    def _touch_obstacles(self, dt: float) -> None:
+        taken = self.obstacles.apply(self.time, dt, lambda: self._hold_at_walls(dt))
+        if taken is not None:
+            self.ledger.obstacle_work += taken.work
+            self.ledger.obstacle_friction += taken.friction
 
     def _g2p(self, dt: float, couples_volumes: bool) -> None:
         for body in self.bodies:
@@ -220,7 +233,8 @@ class Simulation:
         """
         found = zip(self.signal_bounds, reported, diffusivities, strict=True)
         speeds = (bounds.speed(*pair, nu / self.grid.cell_size) for bounds, pair, nu in found)
-        return max(self.free_fall_speed, *speeds)
+        # A point in contact may be as fast as the obstacle in the next step.
+        return max(self.free_fall_speed, *speeds) + self.obstacles.largest_speed
 
     def elastic_energy(self) -> float:
         """The present elastic energy of all bodies [J and the space's amount]; NaN if a law does not state it."""
@@ -240,7 +254,7 @@ class Simulation:
                 clear_bulk(self.grid.bulk, self.grid, self.active)
 
     def _sort_if_drifted(self) -> None:
-        if self.drift > LONGEST_DRIFT * self.grid.cell_size:
+        if self.obstacles.take_away(self.time) or self.drift > LONGEST_DRIFT * self.grid.cell_size:
             self._sort()
 
     def _project_volumes_if_drifted(self) -> None:
@@ -287,6 +301,7 @@ class Simulation:
         """Find the nodes that points awake can touch until the next sort, and keep to them."""
         points = [body.points_awake for body in self.bodies]
         self.keep_to(find_active_nodes(points, self.grid, self.basis, self.periodic_axes))
+        self.obstacles.find_contacts(self.bodies, self.grid, self.basis)
 
     def keep_to(self, active: ActiveNodes) -> None:
         """Work on these nodes until the next sort, and leave zeros everywhere else."""
@@ -307,7 +322,7 @@ class Simulation:
                 raise failure_unsound(self._when, body, dt)
         whole = together(reports)
         self._refuse_lost_points(whole)
-        self.drift += dt * whole.fastest
+        self.drift += dt * (whole.fastest + self.obstacles.largest_speed)
         self.drift_unprojected += dt * whole.fastest
         self.strain_rate = whole.increment / dt
         signals = [

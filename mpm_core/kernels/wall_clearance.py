@@ -30,6 +30,7 @@ from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.grid.active_nodes import DRIFT
 from grainlaw.mpm_core.grid.cell_volumes import WallGap
 from grainlaw.mpm_core.grid.grid import GHOSTS, Grid
+from grainlaw.mpm_core.kernels.point_size import make_size_of
 from grainlaw.mpm_core.kernels.positions import coordinate_of, position_access
 from grainlaw.mpm_core.kernels.shape_functions import Basis
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
@@ -131,7 +132,7 @@ class WallClearance:
 def _make_narrow(space: Space, precision: str) -> Callable[..., Any]:
     """A kernel that narrows clearances along layers to those of points in a precision; the first thread's hold all."""
     access, in_3d, mark = position_access(space, precision), space.axes == 3, f"{space.name}_{precision}_{CORE_MARK}"
-    along, size_of = access.along, _make_size_of(space, precision)
+    along, size_of = access.along, make_size_of(space, precision)
 
     @register_jitable
     @named(mark)
@@ -168,19 +169,3 @@ def _make_narrow(space: Space, precision: str) -> Callable[..., Any]:
             np.minimum(of_threads[0], of_threads[thread], of_threads[0])
 
     return narrow
-
-
-def _make_size_of(space: Space, precision: str) -> Callable[..., Any]:
-    """A function that gives the size of a point, which is no larger than at a least density."""
-    access, in_3d, hoop = position_access(space, precision), space.axes == 3, space.hoop
-    radius_of, density, mass_of = access.along, access.density, access.mass
-
-    @register_jitable
-    @named(f"{space.name}_{precision}_{CORE_MARK}")
-    def size_of(storage, p, mass, least_density):  # type: ignore[no-untyped-def]
-        volume = mass_of(storage, p, mass) / max(density(storage, p), least_density)
-        if hoop:
-            volume /= radius_of(storage, 0, p)
-        return np.cbrt(volume) if in_3d else np.sqrt(volume)
-
-    return size_of

@@ -1,0 +1,135 @@
+"""The motion of an obstacle: fixed, at a given velocity, along a table of poses, or free under gravity and contact."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation, Slerp
+
+Floats = NDArray[np.float64]
+
+
+@dataclass
+class Pose:
+    """Where an obstacle is and how it moves, all in three components, in two axes with z out of the plane.
+
+    position  of its frame [m]
+    rotation  matrix from its frame to space, shape (3, 3)
+    velocity  of its frame [m/s]
+    spin      angular velocity [1/s]
+    """
+
+    position: Floats
+    rotation: Floats
+    velocity: Floats
+    spin: Floats
+
+    def advance(self, dt: float) -> None:
+        """Move on for a time [s] at the present velocities."""
+        self.position = self.position + dt * self.velocity
+        if self.spin.any():
+            self.rotation = Rotation.from_rotvec(dt * self.spin).as_matrix() @ self.rotation
+
+
+def at_rest(position: Sequence[float], rotation: Floats | None = None) -> Pose:
+    """A pose without motion; `position` may have two components."""
+    there = np.zeros(3)
+    there[: len(position)] = position
+    return Pose(there, np.eye(3) if rotation is None else rotation, np.zeros(3), np.zeros(3))
+
+
+class Motion(ABC):
+    """What moves an obstacle; `pose` is the present one."""
+
+    def __init__(self, pose: Pose) -> None:
+        self.pose = pose
+
+    @abstractmethod
+    def before(self, time: float, dt: float) -> None:
+        """Set the velocities for a step of dt [s] that begins at a time [s]."""
+
+    def after(self, dt: float, impulse: Floats, moment: Floats) -> None:
+        """Move on after a step in which contacts gave an impulse [N s] and a moment of it [N m s]."""
+        self.pose.advance(dt)
+
+
+class Steady(Motion):
+    """At rest, or at a constant velocity and a constant spin about a centre that moves with it."""
+
+    def __init__(self, pose: Pose, velocity: Floats, spin: Floats, center: Floats) -> None:
+        super().__init__(pose)
+        self.frame_velocity = velocity
+        self.center = center
+        self.pose.spin = spin
+
+    def before(self, time: float, dt: float) -> None:
+        """The frame moves with the centre, and around it, by half of the turn of the step."""
+        half = Rotation.from_rotvec(0.5 * dt * self.pose.spin).apply(self.pose.position - self.center)
+        self.pose.velocity = self.frame_velocity + np.cross(self.pose.spin, half)
+
+    def after(self, dt: float, impulse: Floats, moment: Floats) -> None:
+        """Exactly around the centre, so that nothing drifts outwards over many turns."""
+        turn = Rotation.from_rotvec(dt * self.pose.spin)
+        arm = turn.apply(self.pose.position - self.center)
+        self.center = self.center + dt * self.frame_velocity
+        self.pose.position = self.center + arm
+        if self.pose.spin.any():
+            self.pose.rotation = turn.as_matrix() @ self.pose.rotation
+
+
+class Along(Motion):
+    """Through a table of poses: positions linear in time between them, rotations at a constant spin."""
+
+    def __init__(self, times: Floats, positions: Floats, rotations: Rotation) -> None:
+        self.times, self.positions, self.rotations = times, positions, rotations
+        self.turns = Slerp(times, rotations)
+        self.time = float(times[0])
+        super().__init__(at_rest(positions[0], rotations[0].as_matrix()))
+
+    def _at(self, time: float) -> tuple[Floats, Rotation]:
+        inside = min(max(time, float(self.times[0])), float(self.times[-1]))
+        position = np.array([np.interp(inside, self.times, along) for along in self.positions.T])
+        return position, self.turns(inside)
+
+    def before(self, time: float, dt: float) -> None:
+        """The velocities that lead to the pose at the end of the step; before and after the table it rests."""
+        (here, turned), (there, further) = self._at(time), self._at(time + dt)
+        self.time = time + dt
+        self.pose.position, self.pose.rotation = here, turned.as_matrix()
+        self.pose.velocity = (there - here) / dt
+        self.pose.spin = (further * turned.inv()).as_rotvec() / dt
+
+    def after(self, dt: float, impulse: Floats, moment: Floats) -> None:
+        """To the pose of the table."""
+        position, rotation = self._at(self.time)
+        self.pose.position, self.pose.rotation = position, rotation.as_matrix()
+
+
+class Free(Motion):
+    """Under gravity and what contacts do, with a mass [kg] and an inertia about its frame, shape (3,) [kg m2].
+
+    `is_free` says which components of velocity and spin there are, shape (6,); the frame is the centre of mass.
+    """
+
+    def __init__(self, pose: Pose, mass: float, inertia: Floats, gravity: Floats, is_free: NDArray[np.bool_]) -> None:
+        super().__init__(pose)
+        self.mass = mass
+        self.inertia = inertia
+        self.gravity = gravity
+        self.is_free = is_free
+
+    def before(self, time: float, dt: float) -> None:
+        """Half of the weight's impulse comes before the contact, half after."""
+        self.pose.velocity = self.pose.velocity + 0.5 * dt * np.where(self.is_free[:3], self.gravity, 0.0)
+
+    def after(self, dt: float, impulse: Floats, moment: Floats) -> None:
+        """Take the impulses of gravity and contact, then move on (Euler's equations in the frame of the body)."""
+        pose = self.pose
+        pushed = impulse / self.mass + 0.5 * dt * self.gravity
+        pose.velocity = pose.velocity + np.where(self.is_free[:3], pushed, 0.0)
+        in_frame = pose.rotation.T @ pose.spin
+        twist = pose.rotation.T @ moment - dt * np.cross(in_frame, self.inertia * in_frame)
+        pose.spin = pose.spin + np.where(self.is_free[3:], pose.rotation @ (twist / self.inertia), 0.0)
+        pose.advance(dt)

@@ -1,0 +1,49 @@
+"""All obstacles of a run: which are there, how they move, and what acts on them."""
+
+from collections.abc import Callable, Sequence
+
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.grid.active_nodes import DRIFT
+from grainlaw.mpm_core.grid.grid import Grid
+from grainlaw.mpm_core.kernels.shape_functions import Basis
+from grainlaw.mpm_core.obstacles.contact import ObstacleContact, TakenByObstacles
+from grainlaw.mpm_core.obstacles.obstacle import Obstacle
+
+
+class Obstacles:
+    """The obstacles of a run, in the order of the scene; only those that are there yet take part."""
+
+    def __init__(self, obstacles: Sequence[Obstacle]) -> None:
+        self.all = list(obstacles)
+        self.present = list(obstacles)
+        self._contact: ObstacleContact | None = None
+
+    @property
+    def largest_speed(self) -> float:
+        """The speed of the fastest point of any surface [m/s]."""
+        return max((obstacle.largest_speed for obstacle in self.present), default=0.0)
+
+    def find_contacts(self, bodies: Sequence[Body], grid: Grid, basis: Basis) -> None:
+        """Find the points that may touch before the next sort."""
+        self._contact = ObstacleContact(self.present, bodies, grid, basis, DRIFT) if self.present else None
+
+    def take_away(self, time: float) -> bool:
+        """Leave out those that are not there any more at a time [s]; returns whether there were any."""
+        left = [obstacle for obstacle in self.present if obstacle.is_there(time)]
+        is_less, self.present = len(left) < len(self.present), left
+        return is_less
+
+    def apply(self, time: float, dt: float, hold_at_walls: Callable[[], None]) -> TakenByObstacles | None:
+        """Apply contact to the new velocities of the nodes, and move on, in a step of dt [s] that begins at a time [s].
+
+        Walls hold what contact pushes against them. Returns None where nothing can touch.
+        """
+        for obstacle in self.present:
+            obstacle.motion.before(time, dt)
+        taken = self._contact.apply(dt) if self._contact is not None else None
+        if taken is not None and taken.impulses.any():
+            hold_at_walls()
+        for number, obstacle in enumerate(self.present):
+            impulse = taken.impulses[number] if taken is not None else None
+            obstacle.advance(dt, impulse)
+        return taken
