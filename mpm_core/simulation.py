@@ -23,10 +23,12 @@ from grainlaw.mpm_core.kernels.volume_coupling import STEPS_PER_COUPLING
 from grainlaw.mpm_core.kernels.wall_clearance import WallClearance
 from grainlaw.mpm_core.kernels.walls import Wall, WallKind, active_layers, hold_at_walls
 from grainlaw.mpm_core.ledger import Ledger
+from grainlaw.mpm_core.obstacles.free_room import FreeRoom
 from grainlaw.mpm_core.obstacles.obstacles import Obstacles
 from grainlaw.mpm_core.output.fields import chosen_fields
 from grainlaw.mpm_core.parallel.sorting import LONGEST_DRIFT
 from grainlaw.mpm_core.parallel.threads import use_threads
+from grainlaw.mpm_core.scene.build_obstacles import build_obstacles, check_start
 from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.scene.resolution import refuse_coarse_stress
@@ -70,7 +72,8 @@ class Simulation:
         initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
         self.walls = _walls(scene)
-        self.obstacles = Obstacles(())
+        self.obstacles = Obstacles(build_obstacles(scene), FreeRoom(self.grid, self.periodic_axes))
+        check_start(scene, self.obstacles.all, self.bodies)
         self.body_force: BodyForce | None = None
         self.held_nodes = np.empty(0, np.int64)
         self.time = 0.0
@@ -261,9 +264,8 @@ class Simulation:
         """Let points leave each cell the room it has, when the fastest has drifted far enough since that was done."""
         if self.projects_volumes and self.drift_unprojected > LONGEST_UNPROJECTED * self.grid.cell_size:
             self._wrap()
-            projected = project_volumes(
-                self.bodies, self.grid, self.periodic_axes, self.scene.gravity, self.wall_clearance.gaps()
-            )
+            gaps, room_of = self.wall_clearance.gaps(), self.obstacles.room_of
+            projected = project_volumes(self.bodies, self.grid, self.periodic_axes, self.scene.gravity, gaps, room_of)
             self.ledger.count_projection(projected.raised)
             self.ways_bounded += projected.bounded
             self.drift += projected.longest_way

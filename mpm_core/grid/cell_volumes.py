@@ -20,6 +20,8 @@ from grainlaw.mpm_core.space import Space
 
 # A cell with more than this share of its room is material, one with less is air.
 FULL = 0.5
+# A cell of which obstacles leave less than this share is part of them.
+SOLID = 0.1
 # Cells from the air within which a free surface lies: there a cell may be less than full without anything missing.
 SURFACE_CELLS = 2
 # Cells of air around what points can reach, so that a free surface never lies at the edge of a window.
@@ -52,23 +54,40 @@ class WallGap(NamedTuple):
     is_open: NDArray[np.bool_]
 
 
+class Room(NamedTuple):
+    """What obstacles leave of the cells of a window, and of the faces between each cell and the next along each axis.
+
+    Shares of cells are those of what is deposited there, not of the cells themselves.
+    """
+
+    cells: NDArray[np.float64]
+    faces: Sequence[NDArray[np.float64]]
+
+
 class CellVolumes(NamedTuple):
-    """Shares of the room of each cell of a window.
+    """Shares of the size of each cell of a window.
 
     fill  of all points
     held  of those that nothing moves apart: they carry tension, or sleep
     gaps  along which walls there is air between wall and material
+    room  what obstacles leave; all of it where there are none
     """
 
     window: CellWindow
     fill: NDArray[np.float64]
     held: NDArray[np.float64]
     gaps: Sequence[WallGap] = ()
+    room: Room | None = None
+
+    @property
+    def overfill(self) -> NDArray[np.float64]:
+        """The volume of points that is too much for each cell, in sizes of a cell; negative where there is room."""
+        return self.fill - (1.0 if self.room is None else self.room.cells)
 
     @property
     def is_material(self) -> NDArray[np.bool_]:
         """Cells that are no air; never the padding."""
-        found = self.fill > FULL
+        found = self.fill > (FULL if self.room is None else np.maximum(FULL * self.room.cells, SOLID))
         for axis in range(found.ndim):
             np.moveaxis(found, axis, 0)[[0, -1]] = False
         return found
@@ -79,15 +98,19 @@ class CellVolumes(NamedTuple):
         return self.is_material & (self.held > 0.5 * self.fill)
 
     def is_interior(self) -> NDArray[np.bool_]:
-        """Cells of material with no air in `SURFACE_CELLS` around them; a wall is no air where material touches it."""
+        """Cells of material with no air in `SURFACE_CELLS` around them; a wall is no air where material touches it.
+
+        Nor is the inside of an obstacle.
+        """
         axes = self.fill.ndim
-        inside = self.is_material[(slice(1, -1),) * axes]
+        no_air = self.is_material if self.room is None else self.is_material | (self.room.cells < SOLID)
+        inside = no_air[(slice(1, -1),) * axes]
         for axis in range(axes):
             widths = [(SURFACE_CELLS, SURFACE_CELLS) if k == axis else (0, 0) for k in range(axes)]
             continued = np.pad(inside, widths, mode="wrap" if axis in self.window.periodic else "edge")
             self._open_gaps(continued, axis)
             inside = np.asarray(sliding_window_view(continued, 2 * SURFACE_CELLS + 1, axis=axis).all(axis=-1))
-        return np.pad(inside, 1)
+        return np.pad(inside, 1) & self.is_material
 
     def _open_gaps(self, continued: NDArray[np.bool_], axis: int) -> None:
         """Put air beyond the walls across an axis that material is off; the axes before it have their final cells."""
@@ -121,23 +144,28 @@ def find_window(bodies: Sequence[Body], grid: Grid, periodic_axes: Sequence[int]
 
 
 def cell_volumes(
-    bodies: Sequence[Body], grid: Grid, periodic_axes: Sequence[int], gaps: Sequence[WallGap] = ()
+    bodies: Sequence[Body],
+    grid: Grid,
+    periodic_axes: Sequence[int],
+    gaps: Sequence[WallGap] = (),
+    room_of: Callable[[CellWindow], Room | None] = lambda window: None,
 ) -> CellVolumes:
     """Deposit the volumes of all points to the middles of cells, with quadratic weights, mirrored at walls.
 
-    In axisymmetry a point stands for its area, volume over radius, in the room that is the area of the cell.
+    In axisymmetry a point stands for its area, volume over radius, in a cell whose size is its area. `room_of` tells
+    what obstacles leave of a window.
     """
     window = find_window(bodies, grid, periodic_axes)
     fill, held = np.zeros(window.shape), np.zeros(window.shape)
-    lower, per_room = corner(window, grid), grid.cell_size**-grid.space.axes
+    lower, per_size = corner(window, grid), grid.cell_size**-grid.space.axes
     for body in bodies:
         deposit = _make_deposit(body.space, body.precision)
         loose = body.awake if body.is_loose else 0
-        deposit(body.storage, 0, loose, body.point_mass, per_room, lower, grid.cell_size, fill)
-        deposit(body.storage, loose, body.count, body.point_mass, per_room, lower, grid.cell_size, held)
+        deposit(body.storage, 0, loose, body.point_mass, per_size, lower, grid.cell_size, fill)
+        deposit(body.storage, loose, body.count, body.point_mass, per_size, lower, grid.cell_size, held)
     fold_padding(fill, window)
     fold_padding(held, window)
-    return CellVolumes(window, fill + held, held, gaps)
+    return CellVolumes(window, fill + held, held, gaps, room_of(window))
 
 
 def corner(window: CellWindow, grid: Grid) -> tuple[float, ...]:
@@ -181,11 +209,11 @@ def _make_deposit(space: Space, precision: str) -> Callable[..., Any]:
 
     @njit(error_model="numpy", cache=True)
     @named(mark)
-    def deposit(storage, begin, end, point_mass, per_room, lower, cell_size, fill):  # type: ignore[no-untyped-def]
-        """Add the volumes of points, over the room of a cell, in the order in which they lie."""
+    def deposit(storage, begin, end, point_mass, per_size, lower, cell_size, fill):  # type: ignore[no-untyped-def]
+        """Add the volumes of points, over the size of a cell, in the order in which they lie."""
         inverse = 1.0 / cell_size
         for p in range(begin, end):
-            volume = mass_of(storage, p, point_mass) * per_room / density(storage, p)
+            volume = mass_of(storage, p, point_mass) * per_size / density(storage, p)
             if hoop:
                 volume /= radius_of(storage, 0, p)
             add_volume(storage, p, volume, lower, inverse, fill)

@@ -6,11 +6,11 @@ do not know. An implicit density projection, as for fluids (Kugelstadt, Longva, 
 
     lap psi = V/h^2 - 1,    x <- x + grad psi
 
-with the volume V that points bring to a cell; in axisymmetry with the area V/r, and (1/r) d(r dpsi/dr)/dr for the
-derivatives along the radius. psi is zero in the air, and nothing moves through a wall, through material that carries
-tension, or through what sleeps. A cell near a free surface, or near a wall that the material does not touch, may be
-less than full; more than full it may not be. Differences of psi across the faces of cells are interpolated linearly at
-the points.
+with the volume V that points bring to a cell. Where an obstacle cuts a cell, 1 is what is left of it. In axisymmetry V
+is the area V/r, with (1/r) d(r dpsi/dr)/dr for the derivatives along the radius. psi is zero in the air, and nothing
+moves through a wall or an obstacle, through material that carries tension, or through what sleeps. A cell near a free
+surface, or near a wall that the material does not touch, may be less than full; more than full it may not be.
+Differences of psi across the faces of cells are interpolated linearly at the points.
 
 It is done when the fastest point has drifted far enough since the last time: the intervals follow from the motion, not
 from the step, and at rest there are none.
@@ -27,7 +27,15 @@ from numpy.typing import NDArray
 
 from grainlaw.materials.compilation import named
 from grainlaw.mpm_core.body import Body
-from grainlaw.mpm_core.grid.cell_volumes import CellVolumes, CellWindow, WallGap, cell_volumes, corner, filled_padding
+from grainlaw.mpm_core.grid.cell_volumes import (
+    CellVolumes,
+    CellWindow,
+    Room,
+    WallGap,
+    cell_volumes,
+    corner,
+    filled_padding,
+)
 from grainlaw.mpm_core.grid.elliptic import solve
 from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.kernels.law_at_points import replaced
@@ -69,12 +77,15 @@ def project_volumes(
     periodic_axes: Sequence[int],
     gravity: tuple[float, ...],
     gaps: Sequence[WallGap] = (),
+    room_of: Callable[[CellWindow], Room | None] = lambda window: None,
 ) -> Projected:
     """Move the points of loose bodies that are awake so that each cell has the volume it has room for.
 
+    `room_of` tells what obstacles leave of a window.
+
     Points must lie in the domain. Raises SimulationError if the elliptic problem does not converge.
     """
-    volumes = cell_volumes(bodies, grid, periodic_axes, gaps)
+    volumes = cell_volumes(bodies, grid, periodic_axes, gaps, room_of)
     overfill = _overfill(volumes)
     is_unknown = volumes.is_material & ~volumes.is_held
     faces = _faces(volumes)
@@ -109,8 +120,8 @@ def _radii(grid: Grid, window: CellWindow) -> tuple[NDArray[np.float64] | float,
 
 
 def _overfill(volumes: CellVolumes) -> NDArray[np.float64]:
-    """V/h^2 - 1 of cells; near a free surface only where it is positive."""
-    excess = volumes.fill - 1.0
+    """V/h^2 - 1 of cells, or what of it obstacles leave; near a free surface only where it is positive."""
+    excess = volumes.overfill
     return np.where(volumes.is_interior(), excess, np.maximum(excess, 0.0))
 
 
@@ -123,7 +134,7 @@ def _faces(volumes: CellVolumes) -> list[NDArray[np.float64]]:
         along = np.moveaxis(faces, axis, 0)
         along[0] *= not below
         along[-2] *= not above
-        found.append(faces)
+        found.append(faces if volumes.room is None else faces * volumes.room.faces[axis])
     return found
 
 
@@ -132,7 +143,7 @@ def _ways(
 ) -> list[NDArray[np.float64]]:
     """What grad psi moves on the face between each cell and the next along each axis, in cells."""
     continued = filled_padding(psi, window)
-    return [open_faces * (np.roll(continued, -1, axis) - continued) for axis, open_faces in enumerate(faces)]
+    return [(open_faces > 0.0) * (np.roll(continued, -1, axis) - continued) for axis, open_faces in enumerate(faces)]
 
 
 @register_jitable(forceinline=True)

@@ -157,6 +157,24 @@ def _distance(obstacle, numbers, place, local, normal):  # type: ignore[no-untyp
     return distance
 
 
+@njit(error_model="numpy", cache=True)
+@named(CORE_MARK)
+def _distances(positions, obstacles, numbers, found):  # type: ignore[no-untyped-def]
+    axes = positions.shape[0]
+    place, local, normal = np.empty(axes), np.empty(axes), np.empty(axes)
+    for p in range(positions.shape[1]):
+        for axis in range(axes):
+            place[axis] = positions[axis, p]
+        found[p] = _distance(obstacles[0], numbers, place, local, normal)
+
+
+def distances(obstacle: Obstacle, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Signed distances [m] of places, shape (axes, n) [m], from an obstacle; negative inside it, shape (n,)."""
+    found = np.empty(positions.shape[1])
+    _distances(positions, *as_rows([obstacle]), found)
+    return found
+
+
 @cache
 def _make_find_pairs(space: Space, precision: str) -> Callable[..., Any]:
     """A kernel that finds the pairs of points and obstacles that are within some distance, in the order of points."""

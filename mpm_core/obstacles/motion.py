@@ -33,7 +33,7 @@ class Pose:
             self.rotation = Rotation.from_rotvec(dt * self.spin).as_matrix() @ self.rotation
 
 
-def at_rest(position: Sequence[float], rotation: Floats | None = None) -> Pose:
+def at_rest(position: Sequence[float] | Floats, rotation: Floats | None = None) -> Pose:
     """A pose without motion; `position` may have two components."""
     there = np.zeros(3)
     there[: len(position)] = position
@@ -43,8 +43,22 @@ def at_rest(position: Sequence[float], rotation: Floats | None = None) -> Pose:
 class Motion(ABC):
     """What moves an obstacle; `pose` is the present one."""
 
-    def __init__(self, pose: Pose) -> None:
+    def __init__(self, pose: Pose, center: Floats | None = None) -> None:
+        """`center` is about what it turns [m], by default the frame's position."""
         self.pose = pose
+        self.center = pose.position if center is None else center
+
+    @property
+    def state(self) -> Floats:
+        """All that changes, for a checkpoint, shape (21,)."""
+        pose = self.pose
+        return np.concatenate([pose.position, pose.rotation.ravel(), pose.velocity, pose.spin, self.center])
+
+    @state.setter
+    def state(self, values: Floats) -> None:
+        position, rotation, velocity, spin, center = np.split(values, [3, 12, 15, 18])
+        self.pose = Pose(position, rotation.reshape(3, 3), velocity, spin)
+        self.center = center
 
     @abstractmethod
     def before(self, time: float, dt: float) -> None:
@@ -59,9 +73,8 @@ class Steady(Motion):
     """At rest, or at a constant velocity and a constant spin about a centre that moves with it."""
 
     def __init__(self, pose: Pose, velocity: Floats, spin: Floats, center: Floats) -> None:
-        super().__init__(pose)
+        super().__init__(pose, center)
         self.frame_velocity = velocity
-        self.center = center
         self.pose.spin = spin
 
     def before(self, time: float, dt: float) -> None:

@@ -63,6 +63,17 @@ class Obstacle:
         """Whether the obstacle is there at a time [s]."""
         return time < self.until
 
+    @property
+    def state(self) -> Floats:
+        """All that changes, for a checkpoint, shape (28,)."""
+        forces = self.forces
+        return np.concatenate([self.motion.state, forces.impulse, forces.moment, [forces.duration]])
+
+    @state.setter
+    def state(self, values: Floats) -> None:
+        self.motion.state, impulse, moment, duration = np.split(values, [21, 24, 27])
+        self.forces = Forces(impulse, moment, float(duration[0]))
+
     def advance(self, dt: float, impulses: Floats | None) -> None:
         """Move on after a step of dt [s] in which impulse and moment, shape (6,), acted."""
         acted = np.zeros(6) if impulses is None else impulses

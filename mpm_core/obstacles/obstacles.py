@@ -2,26 +2,47 @@
 
 from collections.abc import Callable, Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.grid.active_nodes import DRIFT
+from grainlaw.mpm_core.grid.cell_volumes import CellWindow, Room
 from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.kernels.shape_functions import Basis
 from grainlaw.mpm_core.obstacles.contact import ObstacleContact, TakenByObstacles
+from grainlaw.mpm_core.obstacles.free_room import FreeRoom
 from grainlaw.mpm_core.obstacles.obstacle import Obstacle
 
 
 class Obstacles:
     """The obstacles of a run, in the order of the scene; only those that are there yet take part."""
 
-    def __init__(self, obstacles: Sequence[Obstacle]) -> None:
+    def __init__(self, obstacles: Sequence[Obstacle], free_room: FreeRoom) -> None:
         self.all = list(obstacles)
         self.present = list(obstacles)
+        self._free_room = free_room
         self._contact: ObstacleContact | None = None
 
     @property
     def largest_speed(self) -> float:
         """The speed of the fastest point of any surface [m/s]."""
         return max((obstacle.largest_speed for obstacle in self.present), default=0.0)
+
+    def room_of(self, window: CellWindow) -> Room | None:
+        """What obstacles leave of the cells of a window; None without any."""
+        return self._free_room.of_window(self.present, window)
+
+    @property
+    def states(self) -> dict[str, NDArray[np.float64]]:
+        """The states of all obstacles by name, for a checkpoint; those that were taken away have none."""
+        return {obstacle.name: obstacle.state for obstacle in self.present}
+
+    @states.setter
+    def states(self, states: dict[str, NDArray[np.float64]]) -> None:
+        self.present = [obstacle for obstacle in self.all if obstacle.name in states]
+        for obstacle in self.present:
+            obstacle.state = states[obstacle.name]
 
     def find_contacts(self, bodies: Sequence[Body], grid: Grid, basis: Basis) -> None:
         """Find the points that may touch before the next sort."""

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
+from shapely import Polygon, maximum_inscribed_circle
 
 from grainlaw.materials.compilation import named
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
@@ -31,11 +32,16 @@ class SurfaceKind(IntEnum):
 
 
 class Surface(NamedTuple):
-    """A surface: its kind, its numbers [m], and the radius of a ball around its origin that holds it."""
+    """A surface: its kind and its numbers [m].
+
+    radius     of a ball around the origin that holds it [m]
+    thickness  of the largest ball that fits in [m]
+    """
 
     kind: SurfaceKind
     numbers: Floats
     radius: float
+    thickness: float
 
 
 def polygon(corners: Sequence[Sequence[float]] | Floats) -> Surface:
@@ -44,27 +50,32 @@ def polygon(corners: Sequence[Sequence[float]] | Floats) -> Surface:
     x, y = ring.T
     twice_area = float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
     ordered = ring if twice_area > 0.0 else ring[::-1]
-    return Surface(SurfaceKind.POLYGON, np.ascontiguousarray(ordered).reshape(-1), float(np.hypot(x, y).max()))
+    numbers = np.ascontiguousarray(ordered).reshape(-1)
+    thickness = 2.0 * maximum_inscribed_circle(Polygon(ring)).length
+    return Surface(SurfaceKind.POLYGON, numbers, float(np.hypot(x, y).max()), float(thickness))
 
 
 def ball(radius: float) -> Surface:
     """A disc in two axes, a sphere in three."""
-    return Surface(SurfaceKind.BALL, np.array([radius]), radius)
+    return Surface(SurfaceKind.BALL, np.array([radius]), radius, 2.0 * radius)
 
 
 def box(half_lengths: Sequence[float]) -> Surface:
     """A box around the origin."""
-    return Surface(SurfaceKind.BOX, np.array(half_lengths, np.float64), math.hypot(*half_lengths))
+    return Surface(
+        SurfaceKind.BOX, np.array(half_lengths, np.float64), math.hypot(*half_lengths), 2.0 * min(half_lengths)
+    )
 
 
 def cylinder(radius: float, half_height: float) -> Surface:
     """A cylinder around the z axis, its middle in the origin."""
-    return Surface(SurfaceKind.CYLINDER, np.array([radius, half_height]), math.hypot(radius, half_height))
+    thickness = 2.0 * min(radius, half_height)
+    return Surface(SurfaceKind.CYLINDER, np.array([radius, half_height]), math.hypot(radius, half_height), thickness)
 
 
 def half_space() -> Surface:
     """Everything below the plane z = 0, in two axes below the line y = 0."""
-    return Surface(SurfaceKind.HALF_SPACE, np.empty(0), math.inf)
+    return Surface(SurfaceKind.HALF_SPACE, np.empty(0), math.inf, math.inf)
 
 
 def distance_grid(origin: Sequence[float], spacing: float, distances: Floats) -> Surface:
@@ -75,7 +86,7 @@ def distance_grid(origin: Sequence[float], spacing: float, distances: Floats) ->
     head = [*origin, spacing, *distances.shape]
     ends = np.array(origin) + spacing * (np.array(distances.shape) - 1)
     radius = float(np.hypot.reduce(np.maximum(np.abs(origin), np.abs(ends))))
-    return Surface(SurfaceKind.GRID, np.concatenate([head, distances.ravel()]), radius)
+    return Surface(SurfaceKind.GRID, np.concatenate([head, distances.ravel()]), radius, -2.0 * float(distances.min()))
 
 
 @register_jitable

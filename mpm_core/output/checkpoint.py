@@ -59,6 +59,8 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
             group.create_dataset("stripe_starts", data=body.stripe_starts)
             group.attrs.update(law=body.law.name, law_mark=mark_of_law(body.law), rows=", ".join(body.row_names))
             group.attrs.update(awake=body.awake, signal_speed_asleep=body.signal_speed_asleep)
+        for name, state in simulation.obstacles.states.items():
+            file.create_dataset(f"obstacle/{name}", data=state)
         if simulation.sleep is not None:
             sleep = file.create_group("sleep")
             sleep.attrs["started"] = simulation.sleep.started
@@ -134,6 +136,8 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     simulation.signal_speed = float(file.attrs["signal_speed"])
     simulation.strain_rate = float(file.attrs["strain_rate"])
     simulation.keep_to(active_between(simulation.grid, *(numbers_of(file[f"active/{name}"]) for name in ACTIVE_ROWS)))
+    simulation.obstacles.states = {name: numbers_of(state) for name, state in file.get("obstacle", {}).items()}
+    simulation.obstacles.find_contacts(simulation.bodies, simulation.grid, simulation.basis)
     simulation.ledger = Ledger(**{name: float(value) for name, value in file["ledger"].attrs.items()})
     clock = file["clock"].attrs
     counts = {name: int(clock[name]) for name in ("next_frame", "next_history", "history_rows")}

@@ -41,8 +41,9 @@ class InteriorOverfill:
 
 def interior_overfill(simulation: Simulation) -> InteriorOverfill:
     """Measure it over cells of loose material that are far enough from any free surface; zero where there is none."""
-    volumes = cell_volumes(simulation.bodies, simulation.grid, simulation.periodic_axes)
-    inside = volumes.fill[volumes.is_interior() & ~volumes.is_held] - 1.0
+    room_of = simulation.obstacles.room_of
+    volumes = cell_volumes(simulation.bodies, simulation.grid, simulation.periodic_axes, room_of=room_of)
+    inside = volumes.overfill[volumes.is_interior() & ~volumes.is_held]
     return InteriorOverfill(float(inside.mean()), float(inside.std())) if inside.size else InteriorOverfill(0.0, 0.0)
 
 

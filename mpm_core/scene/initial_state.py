@@ -137,9 +137,12 @@ def _build(
 
 def volume_per_point(scene: Scene, section: BodySection) -> float:
     """The part of a cell that a point stands for [m3], in plane strain and axisymmetry its area [m2]."""
-    axes = scene.in_space.axes
-    spacing = scene.grid.cell_size / points_along_edge(section.points_per_cell, axes)
-    return float(spacing**axes)
+    return float(spacing_of_points(scene, section) ** scene.in_space.axes)
+
+
+def spacing_of_points(scene: Scene, section: BodySection) -> float:
+    """The distance of neighbouring points of a body at the start [m]."""
+    return scene.grid.cell_size / points_along_edge(section.points_per_cell, scene.in_space.axes)
 
 
 def point_masses(scene: Scene, section: BodySection, positions: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -15,6 +15,7 @@ from grainlaw.mpm_core.scene.boundary import BoundarySection
 from grainlaw.mpm_core.scene.errors import described
 from grainlaw.mpm_core.scene.file import read_content
 from grainlaw.mpm_core.scene.outline import Points
+from grainlaw.mpm_core.scene.obstacle import ObstacleSection
 from grainlaw.mpm_core.scene.presets import with_settings_for_accuracy
 from grainlaw.mpm_core.scene.section import (
     LARGEST_DENSITY,
@@ -271,6 +272,7 @@ class Scene(Section):
         min_length=1, description="[material.NAME]: the law's parameters, and `law` if NAME is not the law's own name"
     )
     body: Annotated[list[BodySection], Field(min_length=1)]
+    obstacle: list[ObstacleSection] = Field(default=[])
     output: OutputSection = Field(default=OutputSection())
     _source: str = PrivateAttr(default="scene")
 
@@ -328,6 +330,7 @@ class Scene(Section):
         if self.in_space.hoop:
             self._refuse_without_axis()
         self.boundary.refuse_for(self.in_space, self.left_is_axis)
+        self._refuse_obstacles()
         for number, body in enumerate(self.body):
             if len(body.shape.bounds()[0]) != self.in_space.axes:
                 raise ValueError(f"body.{number}.shape: {refused_mesh(body.shape)} in space = '{self.space}'")
@@ -337,6 +340,13 @@ class Scene(Section):
                     f"space = '{self.space}' horizontal_ratio sets both horizontal stresses"
                 )
         return self
+
+    def _refuse_obstacles(self) -> None:
+        names = [obstacle.name for obstacle in self.obstacle]
+        for number, obstacle in enumerate(self.obstacle):
+            if obstacle.name in names[:number]:
+                raise ValueError(f"obstacle.{number}.name = '{obstacle.name}': there is another of that name")
+            obstacle.refuse_for(f"obstacle.{number}", self.in_space)
 
     def _refuse_without_axis(self) -> None:
         if self.grid.lower[0] < 0.0:

@@ -1,0 +1,127 @@
+"""Building the obstacles of a scene, and what is wrong with where they are."""
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from grainlaw.materials import InputError
+from grainlaw.materials.errors import InputWarning
+from grainlaw.mpm_core.body import Body
+from grainlaw.mpm_core.obstacles.contact import distances
+from grainlaw.mpm_core.obstacles.motion import Along, Free, Motion, Steady, at_rest
+from grainlaw.mpm_core.obstacles.obstacle import Obstacle
+from grainlaw.mpm_core.scene.initial_state import spacing_of_points
+from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.scene.obstacle import FreeSection, MotionSection, ObstacleSection
+from grainlaw.mpm_core.scene.obstacle_surfaces import Placed, placed
+
+Floats = NDArray[np.float64]
+
+# By how much of its size a point may lie in an obstacle at the start: corners of a lattice at an oblique surface.
+DEEPEST_START = 0.5
+# Cells that an obstacle has to be thick for material on its two sides not to share nodes.
+THICK = 3.0
+
+
+def build_obstacles(scene: Scene) -> list[Obstacle]:
+    """The obstacles of a scene. Raises InputError for one that lies outside the domain, or has no surface."""
+    obstacles = []
+    for number, section in enumerate(scene.obstacle):
+        try:
+            found = placed(section.shape, scene.grid)
+        except ValueError as error:
+            raise InputError(f"obstacle.{number}.shape: {error}") from error
+        obstacle = Obstacle(
+            section.name,
+            found.surface,
+            section.friction,
+            _motion(scene, section, found),
+            section.hollow,
+            np.inf if section.until is None else section.until,
+        )
+        _refuse_outside(scene, number, obstacle)
+        obstacles.append(obstacle)
+    return obstacles
+
+
+def _motion(scene: Scene, section: ObstacleSection, found: Placed) -> Motion:
+    pose = at_rest(found.position, found.rotation)
+    if section.motion is not None:
+        return _along(section.motion, found)
+    if section.free is not None:
+        return _free(scene, section.free, found)
+    velocity, center = _in_3d(section.velocity), found.position
+    if section.center is not None:
+        center = _in_3d(section.center)
+    return Steady(pose, velocity, _spin(section.angular_velocity), center)
+
+
+def _along(table: MotionSection, found: Placed) -> Motion:
+    ways = np.array([_in_3d(way) for way in table.displacement or ()])
+    angles = np.array(table.angle or [0.0] * len(ways))
+    turns = Rotation.from_rotvec(np.outer(angles, [0.0, 0.0, 1.0])) * Rotation.from_matrix(found.rotation)
+    return Along(np.array(table.time or ()), found.position + ways, turns)
+
+
+def _free(scene: Scene, section: FreeSection, found: Placed) -> Motion:
+    space = scene.in_space
+    pose = at_rest(found.position, found.rotation)
+    pose.velocity, pose.spin = _in_3d(section.velocity), _spin(section.angular_velocity)
+    density = section.density or (section.mass or 0.0) / found.volume
+    is_free = np.zeros(6, np.bool_)
+    is_free[: space.axes] = True
+    is_free[0] = not space.hoop
+    if section.turns and not space.hoop:
+        is_free[3:] = True if space.axes == 3 else [False, False, True]
+    return Free(pose, density * found.volume, density * found.inertia, _in_3d(scene.gravity), is_free)
+
+
+def _in_3d(vector: Sequence[float] | None) -> Floats:
+    whole = np.zeros(3)
+    if vector is not None:
+        whole[: len(vector)] = vector
+    return whole
+
+
+def _spin(given: float | tuple[float, ...]) -> Floats:
+    return np.array(given if isinstance(given, tuple) else (0.0, 0.0, given), np.float64)
+
+
+def _refuse_outside(scene: Scene, number: int, obstacle: Obstacle) -> None:
+    lower, upper = np.array(scene.grid.lower), np.array(scene.grid.upper)
+    position, radius = obstacle.motion.pose.position[: len(lower)], obstacle.surface.radius
+    if ((position + radius < lower) | (position - radius > upper)).any():
+        raise InputError(
+            f"obstacle.{number} ('{obstacle.name}') lies outside the domain {list(scene.grid.lower)} to "
+            f"{list(scene.grid.upper)}"
+        )
+
+
+def check_start(scene: Scene, obstacles: Sequence[Obstacle], bodies: Sequence[Body]) -> None:
+    """Raises InputError for a body in an obstacle, and warns about obstacles too thin to part what is on both sides."""
+    for obstacle in obstacles:
+        for number, body in enumerate(bodies):
+            spacing = spacing_of_points(scene, scene.body[number])
+            depth = -distances(obstacle, body.positions)
+            inside = depth > DEEPEST_START * spacing
+            if inside.any():
+                place = ", ".join(f"{coordinate:g}" for coordinate in body.positions[:, np.argmax(depth)])
+                raise InputError(
+                    f"{body.name}: {inside.sum()} of {body.count} points lie inside obstacle '{obstacle.name}', "
+                    f"the deepest at ({place})"
+                )
+        _warn_if_thin(scene, obstacle)
+
+
+def _warn_if_thin(scene: Scene, obstacle: Obstacle) -> None:
+    thickness, cell_size = obstacle.surface.thickness, scene.grid.cell_size
+    if not obstacle.hollow and thickness < THICK * cell_size:
+        warnings.warn(
+            f"{scene.source}: obstacle '{obstacle.name}' is {thickness:g} m thick, {thickness / cell_size:.2g} cells: "
+            f"material on both sides of it would drag one another along; with {THICK * cell_size:g} m it does not",
+            InputWarning,
+            stacklevel=2,
+        )

@@ -1,0 +1,132 @@
+"""The surface of an obstacle's shape: where its frame stands, and its distances in that frame."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from grainlaw.mpm_core.obstacles import surface as surfaces
+from grainlaw.mpm_core.obstacles.surface import Surface
+from grainlaw.mpm_core.scene.mesh_region import MeshRegion
+from grainlaw.mpm_core.scene.model import GridSection
+from grainlaw.mpm_core.scene.obstacle_shapes import AnyObstacleShape, Line, Plane, Terrain
+from grainlaw.mpm_core.scene.shapes import Disc, Polygon, Rectangle
+from grainlaw.mpm_core.scene.solids import Box, Cylinder, Sphere
+
+Floats = NDArray[np.float64]
+
+
+class Placed(NamedTuple):
+    """A surface in its frame, the frame's position [m] (its centre of mass) and rotation, and what it measures.
+
+    volume   [m3], in two axes its area [m2]
+    inertia  about the frame's axes over the density, shape (3,); in two axes only the third counts
+    """
+
+    surface: Surface
+    position: Floats
+    rotation: Floats
+    volume: float
+    inertia: Floats
+
+
+def placed(shape: AnyObstacleShape, grid: GridSection) -> Placed:
+    """The surface of a shape. Raises ValueError where a mesh has none that can be used."""
+    if isinstance(shape, Terrain):
+        return _terrain(shape, grid)
+    if isinstance(shape, MeshRegion):
+        raise ValueError(f"mesh file {shape.file}: meshes are not obstacles yet")
+    return _OF_SHAPES[type(shape)](shape)
+
+
+def _placed(surface: Surface, center: tuple[float, ...], volume: float, inertia: float | Floats) -> Placed:
+    position = np.zeros(3)
+    position[: len(center)] = center
+    return Placed(surface, position, np.eye(3), volume, np.broadcast_to(inertia, 3).astype(np.float64))
+
+
+def _polygon(corners: Floats) -> Placed:
+    """Area, centroid and polar moment of a polygon are sums over its edges (Green's theorem)."""
+    x, y = corners.T
+    next_x, next_y = np.roll(x, -1), np.roll(y, -1)
+    cross = x * next_y - next_x * y
+    area = 0.5 * cross.sum()
+    center = np.array([((x + next_x) * cross).sum(), ((y + next_y) * cross).sum()]) / (6.0 * area)
+    squares = x * x + x * next_x + next_x * next_x + y * y + y * next_y + next_y * next_y
+    polar = (cross * squares).sum() / 12.0 - area * float(center @ center)
+    surface = surfaces.polygon(corners - center)
+    return _placed(surface, tuple(center), abs(float(area)), abs(float(polar)))
+
+
+def _plane(shape: Plane) -> Placed:
+    normal = np.array(shape.normal) / np.linalg.norm(shape.normal)
+    position = np.zeros(3)
+    position[: len(shape.point)] = shape.point
+    if len(normal) == 2:
+        rotation = np.array([[normal[1], normal[0], 0.0], [-normal[0], normal[1], 0.0], [0.0, 0.0, 1.0]])
+    else:
+        rotation = _turned_up(normal)
+    return Placed(surfaces.half_space(), position, rotation, np.inf, np.full(3, np.inf))
+
+
+def _turned_up(direction: Floats) -> Floats:
+    """A rotation that takes the z axis to a unit vector."""
+    up = np.array([0.0, 0.0, 1.0])
+    axis, cosine = np.cross(up, direction), float(direction[2])
+    if np.linalg.norm(axis) < 1e-12:
+        return np.eye(3) if cosine > 0.0 else np.diag([1.0, -1.0, -1.0])
+    angle = np.arctan2(np.linalg.norm(axis), cosine)
+    return np.asarray(Rotation.from_rotvec(angle * axis / np.linalg.norm(axis)).as_matrix())
+
+
+def _box(shape: Box) -> Placed:
+    half = 0.5 * (np.array(shape.upper) - np.array(shape.lower))
+    center = 0.5 * (np.array(shape.upper) + np.array(shape.lower))
+    volume = 8.0 * float(half.prod())
+    inertia = volume / 3.0 * (half @ half - half**2)
+    return _placed(surfaces.box(half.tolist()), tuple(center), volume, inertia)
+
+
+def _cylinder(shape: Cylinder) -> Placed:
+    radius, height = shape.radius, shape.height
+    volume = np.pi * radius**2 * height
+    across = volume * (radius**2 / 4.0 + height**2 / 12.0)
+    center = np.array(shape.center) + 0.5 * height * shape.direction
+    inertia = np.array([across, across, 0.5 * volume * radius**2])
+    return Placed(surfaces.cylinder(radius, 0.5 * height), center, _turned_up(shape.direction), volume, inertia)
+
+
+def _rectangle(shape: Rectangle) -> Placed:
+    (left, bottom), (right, top) = shape.lower, shape.upper
+    return _polygon(np.array([(left, bottom), (right, bottom), (right, top), (left, top)]))
+
+
+def _terrain(shape: Terrain, grid: GridSection) -> Placed:
+    # as far beyond the domain as it is wide and high: no other side is ever the nearest
+    far = sum(high - low for low, high in zip(grid.lower, grid.upper, strict=True))
+    lowest = min(grid.lower[1], *(y for _, y in shape.points))
+    return _polygon(shape.outline(grid.lower[0] - far, grid.upper[0] + far, lowest - far))
+
+
+def _disc(shape: Disc) -> Placed:
+    area = np.pi * shape.radius**2
+    return _placed(surfaces.ball(shape.radius), shape.center, area, 0.5 * area * shape.radius**2)
+
+
+def _sphere(shape: Sphere) -> Placed:
+    volume = 4.0 / 3.0 * np.pi * shape.radius**3
+    return _placed(surfaces.ball(shape.radius), shape.center, volume, 0.4 * volume * shape.radius**2)
+
+
+_OF_SHAPES: dict[type[Any], Callable[[Any], Placed]] = {
+    Rectangle: _rectangle,
+    Polygon: lambda shape: _polygon(np.array(shape.vertices)),
+    Line: lambda shape: _polygon(shape.outline()),
+    Disc: _disc,
+    Plane: _plane,
+    Sphere: _sphere,
+    Box: _box,
+    Cylinder: _cylinder,
+}
