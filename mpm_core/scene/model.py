@@ -14,8 +14,8 @@ from grainlaw.materials.law import Law
 from grainlaw.mpm_core.scene.boundary import BoundarySection
 from grainlaw.mpm_core.scene.errors import described
 from grainlaw.mpm_core.scene.file import read_content
-from grainlaw.mpm_core.scene.outline import Points
 from grainlaw.mpm_core.scene.obstacle import ObstacleSection
+from grainlaw.mpm_core.scene.outline import Points
 from grainlaw.mpm_core.scene.presets import with_settings_for_accuracy
 from grainlaw.mpm_core.scene.section import (
     LARGEST_DENSITY,

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, PlainValidator, model_validator
 
 from grainlaw.mpm_core.scene.obstacle_shapes import OBSTACLE_SHAPES, AnyObstacleShape, Plane
-from grainlaw.mpm_core.scene.section import LARGEST_DENSITY, LARGEST_SPEED, Section, Vector, at_most
+from grainlaw.mpm_core.scene.section import LARGEST_DENSITY, LARGEST_SPEED, Section, Vector, refuse_beyond
 from grainlaw.mpm_core.space import Space
 
 LARGEST_SPIN = 1e6  # 1/s
@@ -18,7 +18,7 @@ def _number_or_vector(value: Any) -> float | tuple[float, ...]:
     entries = list(value) if isinstance(value, list | tuple) else [value]
     if not all(type(entry) in (int, float) for entry in entries) or (value is not entries[0] and len(entries) != 3):
         raise ValueError(f"{value!r:.60} is no angular velocity; allowed: a number, in 3D three numbers")
-    at_most(entries, LARGEST_SPIN, "1/s")
+    refuse_beyond(entries, LARGEST_SPIN, "1/s")
     return tuple(map(float, entries)) if isinstance(value, list | tuple) else float(value)
 
 
@@ -119,7 +119,7 @@ class ObstacleSection(Section):
             raise ValueError("a plane is neither free nor hollow")
         for velocity in (self.velocity, self.free.velocity if self.free else None):
             if velocity is not None:
-                at_most(velocity, LARGEST_SPEED, "m/s")
+                refuse_beyond(velocity, LARGEST_SPEED, "m/s")
         return self
 
     @property
