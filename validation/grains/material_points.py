@@ -1,6 +1,7 @@
 """Material points as grains: each a grain whose volume of solid is its mass over the grain density.
 
-In plane strain a point has one metre of depth; its plane (x, y) is the (x, z) of the grains.
+In plane strain a point has one metre of depth, in axisymmetry it is a ring all around the axis; its plane (x, y) is the
+(x, z) of the grains.
 """
 
 from collections.abc import Iterator, Sequence
@@ -12,19 +13,23 @@ from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.space import Space
 from grainlaw.validation.grains.snapshot import Array, GrainSnapshot, StressMoments
 
 DEPTH = 1.0
+# Rows of a body's stress that are xx, zz, xz of the grains, by the number of axes.
+STRESSES = {2: [0, 1, 3], 3: [0, 2, 5]}
 
 
 def snapshot_of_bodies(time: float, bodies: Sequence[Body], density: float) -> GrainSnapshot:
     """The points of all bodies at a time [s]; `density` of the grains [kg/m3]."""
-    plane = np.concatenate([body.positions for body in bodies], axis=1)
-    velocity = np.concatenate([body.velocity for body in bodies], axis=1)
-    volumes = np.concatenate([body.volume for body in bodies])
-    stress = np.concatenate([body.stress[[0, 1, 3]] for body in bodies], axis=1)
-    moments = StressMoments(_in_space(plane), -(stress * volumes).T)
-    return GrainSnapshot(time, _in_space(plane), _in_space(velocity), _solid_volumes(bodies, density), moments)
+    space = bodies[0].space
+    positions = _in_3d(np.concatenate([body.positions for body in bodies], axis=1))
+    velocity = _in_3d(np.concatenate([body.velocity for body in bodies], axis=1))
+    volumes = _whole(space) * np.concatenate([body.volume for body in bodies])
+    stress = np.concatenate([body.stress[STRESSES[space.axes]] for body in bodies], axis=1)
+    moments = StressMoments(positions, -(stress * volumes).T)
+    return GrainSnapshot(time, positions, velocity, _solid_volumes(bodies, density), moments)
 
 
 def snapshots_of_run(run: RunFolder, scene: Scene, density: float) -> Iterator[GrainSnapshot]:
@@ -37,8 +42,9 @@ def snapshots_of_run(run: RunFolder, scene: Scene, density: float) -> Iterator[G
             raise InputError(
                 f"{run.path}: frame {number} holds {len(frame.positions)} points, the scene {len(volumes)}"
             )
-        velocity = frame.field("velocity").values
-        yield GrainSnapshot(frame.time, _in_space(frame.positions[:, :2].T), _in_space(velocity[:, :2].T), volumes)
+        axes = scene.in_space.axes
+        positions, velocity = frame.positions[:, :axes].T, frame.field("velocity").values[:, :axes].T
+        yield GrainSnapshot(frame.time, _in_3d(positions), _in_3d(velocity), volumes)
 
 
 def mirrored(snapshot: GrainSnapshot, plane: float = 0.0) -> GrainSnapshot:
@@ -81,9 +87,16 @@ def grain_diameter(bodies: Sequence[Body]) -> float | None:
 
 
 def _solid_volumes(bodies: Sequence[Body], density: float) -> Array:
-    return np.concatenate([np.full(body.count, body.point_mass / density) for body in bodies])
+    return _whole(bodies[0].space) * np.concatenate([body.masses / density for body in bodies])
 
 
-def _in_space(plane: Array) -> Array:
-    """Rows (x, y) of the plane as (x, 0, z) of each point, shape (n, 3)."""
-    return np.column_stack([plane[0], np.zeros(plane.shape[1]), plane[1]])
+def _whole(space: Space) -> float:
+    """Radians around the axis; in the other spaces 1."""
+    return 2.0 * np.pi if space.hoop else 1.0
+
+
+def _in_3d(rows: Array) -> Array:
+    """Each point's (x, y, z), shape (n, 3), from rows of them; rows (x, y) of a plane are (x, 0, z)."""
+    if len(rows) == 3:
+        return rows.T
+    return np.column_stack([rows[0], np.zeros(rows.shape[1]), rows[1]])

@@ -1,44 +1,87 @@
-"""A run's folder of this library observed as grains are."""
+"""A run's folder of this library observed as grains are.
 
+A run in 3D is compared with what it stands for: a plane column, over the depth of its domain, or a cylinder, all around
+its axis.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.output.run_folder import SCENE_NAME, RunFolder
 from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.space import PLANE_STRAIN, Space
 from grainlaw.validation.grains.material_points import DEPTH, grain_density, grain_diameter, mirrored, snapshots_of_run
 from grainlaw.validation.grains.observation import Observation
 from grainlaw.validation.grains.observe import Setting, observe
+from grainlaw.validation.grains.snapshot import Array, GrainSnapshot
 
 
-def observe_run(folder: Path, width: float, density: float | None = None) -> Observation:
+def observe_run(folder: Path, width: float, density: float | None = None, space: Space = PLANE_STRAIN) -> Observation:
     """The observation of a run with a kernel of the grains' width [m].
 
-    `density` is that of the grains [kg/m3], for a law that declares none.
-    A column that stands against a free-slip side is taken for the half of one that is symmetric about it.
-    Raises InputError if the folder holds no run, or frames without velocity.
+    `density` is that of the grains [kg/m3], for a law that declares none. `space` is that of what a run in 3D is
+    compared with: plane strain for a plane column, axisymmetry for a cylinder.
+    A column that stands against a free-slip side is taken for the half, or the quarter, of one that is symmetric about
+    it. Raises InputError if the folder holds no run, or frames without velocity.
     """
     run = RunFolder(folder)
     scene = Scene.load(folder / SCENE_NAME)
     bodies = build_bodies(scene)
-    lowest = min(float(body.positions[0].min()) for body in bodies)
-    highest = max(float(body.positions[0].max()) for body in bodies)
     found = grain_density(bodies, density)
     snapshots = snapshots_of_run(run, scene, found)
-    center = 0.5 * (lowest + highest)
-    left = scene.grid.lower[0]
-    if scene.boundary.left.kind == "free_slip" and lowest - left < scene.grid.cell_size:
-        center = left
-        snapshots = (mirrored(snapshot, left) for snapshot in snapshots)
+    compared = space if scene.in_space.axes == 3 else scene.in_space
     setting = Setting(
         width=width,
-        depth=DEPTH,
-        floor=scene.grid.lower[1],
-        center=center,
+        depth=_depth(scene),
+        floor=scene.grid.lower[scene.in_space.up],
+        center=0.0,
         grain_density=found,
-        gravity=-scene.gravity[1],
+        gravity=-scene.gravity[scene.in_space.up],
+        space=compared,
     )
+    if not scene.in_space.hoop:
+        corners = np.array([(body.positions.min(axis=1), body.positions.max(axis=1)) for body in bodies])
+        lowest, highest = corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)
+        place = _around_axis if compared.hoop else _along_slope
+        setting, snapshots = place(scene, setting, snapshots, lowest, highest)
     return observe(snapshots, setting, _description(folder, scene, bodies))
+
+
+def _depth(scene: Scene) -> float:
+    """Over which the points of a plane column are averaged [m]."""
+    return scene.grid.upper[1] - scene.grid.lower[1] if scene.in_space.axes == 3 else DEPTH
+
+
+def _is_halved(scene: Scene, axis: int, lowest: Array) -> bool:
+    """Whether the bodies stand against a plane of symmetry at the lower side along an axis."""
+    side = scene.boundary.of(scene.in_space.sides[axis][0])
+    return bool(side.kind == "free_slip" and lowest[axis] - scene.grid.lower[axis] < scene.grid.cell_size)
+
+
+def _along_slope(
+    scene: Scene, setting: Setting, snapshots: Iterator[GrainSnapshot], lowest: Array, highest: Array
+) -> tuple[Setting, Iterator[GrainSnapshot]]:
+    """A plane column, mirrored where it is half of one."""
+    if _is_halved(scene, 0, lowest):
+        left = scene.grid.lower[0]
+        return replace(setting, center=left), (mirrored(snapshot, left) for snapshot in snapshots)
+    return replace(setting, center=0.5 * float(lowest[0] + highest[0])), snapshots
+
+
+def _around_axis(
+    scene: Scene, setting: Setting, snapshots: Iterator[GrainSnapshot], lowest: Array, highest: Array
+) -> tuple[Setting, Iterator[GrainSnapshot]]:
+    """A cylinder in 3D, or the half or the quarter of one, whose points count for the others."""
+    halved = [_is_halved(scene, axis, lowest) for axis in (0, 1)]
+    x, y = (scene.grid.lower[axis] if halved[axis] else 0.5 * float(lowest[axis] + highest[axis]) for axis in (0, 1))
+    times = 2.0 ** sum(halved)
+    whole = (replace(snapshot, solid_volumes=times * snapshot.solid_volumes) for snapshot in snapshots)
+    return replace(setting, center=x, center_y=y), whole
 
 
 def diameter_of_run(folder: Path) -> float | None:

@@ -43,7 +43,12 @@ class Ensemble:
     @property
     def kind(self) -> str:
         """What the case is, in a word."""
-        return "Cylinder" if self.space.hoop else "Column"
+        return "cylinder" if self.space.hoop else "column"
+
+    @property
+    def title(self) -> str:
+        """The aspect ratio, and that it is no plane column, if so."""
+        return f"a = {self.aspect_ratio:g}{', cylinder' if self.space.hoop else ''}"
 
     @property
     def floor(self) -> str:

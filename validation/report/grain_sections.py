@@ -35,11 +35,13 @@ MODELLED = (
     "h(x): the highest level where the solid fraction falls through half of that of the packing before the release. "
     "Runout w: half of the width over which h exceeds one grain diameter. H: the largest h. t50: when half of the "
     "growth of the runout is reached. E_A: area between two surfaces over the mean area below them. phi: mean solid "
-    "fraction two diameters below the surface and one above the floor."
+    "fraction two diameters below the surface and one above the floor. Cylinders: the same around their axis; w is the "
+    "radius of the pile, E_A the volume between two surfaces over the mean volume below them."
 )
 CONTINUUM = (
     "The continuum starts with the mass and the mean surface of the packing at rest under its own weight, with equal "
-    "normal stresses, on a floor with friction 0.7; by symmetry half of the column is run, in plane strain."
+    "normal stresses, on a floor with friction 0.7; by symmetry half of the column is run, in plane strain, and of a "
+    "cylinder a radian, in axisymmetry."
 )
 LEFT_OUT = (
     "Left out of the continuum: the rolling of grains on the floor, the layering of grains at smooth walls before the "

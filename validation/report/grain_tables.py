@@ -33,7 +33,7 @@ def scatter_table(found: Sequence[Scatter]) -> Table:
 
 def verdict_table(ensemble: Ensemble, judgements: Sequence[Judgement]) -> Table:
     """Laws on one column of the reference set."""
-    title = f"{ensemble.kind} a = {ensemble.aspect_ratio:g}, {ensemble.floor} floor"
+    title = f"{ensemble.kind.capitalize()} a = {ensemble.aspect_ratio:g}, {ensemble.floor} floor"
     return comparison_table(ensemble, judgements, title)
 
 
@@ -107,7 +107,7 @@ def summary_table(report: Report) -> Table:
             )
         )
     rows += [(title, *[""] * (len(report.columns) + 1), reason) for title, reason in report.unfitted.items()]
-    columns = ("law", *(f"a = {ensemble.aspect_ratio:g}" for ensemble in report.columns), "indistinguishable", "limits")
+    columns = ("law", *(ensemble.title for ensemble in report.columns), "indistinguishable", "limits")
     note = "Each verdict is that of the worst of E_A, w, H and t50; in brackets: counted without t50."
     return Table("Verdicts", note, columns, tuple(rows))
 
@@ -169,16 +169,17 @@ def cost_table(report: Report) -> Table:
             runs = [run.description for run in ensemble.runs if run.description.get("code") == code]
             seconds = sum(run.get("cpu_time") or run.get("wall_time") or math.nan for run in runs) / len(runs)
             work = sum((run.get("grains") or math.nan) * (run.get("steps") or math.nan) for run in runs) / len(runs)
-            rows.append((f"a = {ensemble.aspect_ratio:g}", code, *_cost(seconds, work), "", ""))
+            rows.append((ensemble.title, code, *_cost(seconds, work), "", ""))
         for judged in report.of_column(ensemble):
             if judged.observation is not None and judged.comparison is not None:
                 cost = judged.observation.description
                 area = judged.comparison.distances[0].distance
                 cells = _cost(float(cost["cpu_time"]), float(cost["points"]) * float(cost["steps"]))
-                rows.append((f"a = {ensemble.aspect_ratio:g}", judged.name, *cells, percent(area), judged.verdict))
+                rows.append((ensemble.title, judged.name, *cells, percent(area), judged.verdict))
     note = (
         "Seconds of one core. Grains: CPU time where a run told it, else wall time on a machine that also did other "
-        "work; the whole width and a depth of four grains, without the settling. Laws: CPU time, half of the column."
+        "work; the whole width and a depth of four grains, or the whole cylinder, without the settling. Laws: CPU time, "
+        "half of the column, or a radian."
     )
     columns = ("column", "what", "s", "million grain- or point-steps", "million/s", "E_A", "verdict")
     return Table("Cost", note, columns, tuple(rows))

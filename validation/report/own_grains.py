@@ -29,10 +29,11 @@ def judged_runs(folders: Sequence[Path], references: Sequence[Path]) -> tuple[En
     width = float(np.mean([reference.description["kernel_width"] for reference in observed]))
     densities = {float(found) for reference in observed if (found := reference.description.get("grain_density"))}
     density = densities.pop() if len(densities) == 1 else None
+    space = observed[0].space
     ensemble = Ensemble(" and ".join(reference.label for reference in observed), tuple(observed))
     judgements = []
     for folder in folders:
-        run = observe_run(folder, width, density)
+        run = observe_run(folder, width, density, space)
         judgements.append(Judgement(folder.name, ensemble, run, compare(run, observed)))
     return ensemble, judgements
 

@@ -1,4 +1,7 @@
-"""The column of the grains as a scene: the same mass, the same surface at the start, half of it by symmetry."""
+"""The column of the grains as a scene: the same mass, the same surface at the start, half of it by symmetry.
+
+A cylinder is a scene in axisymmetry: the same rectangle, of which a radian is computed.
+"""
 
 import time
 from dataclasses import dataclass
@@ -8,9 +11,12 @@ import numpy as np
 
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.space import Space
+from grainlaw.validation.grains.coarse_graining import column_weights
 from grainlaw.validation.grains.material_points import DEPTH, mirrored, snapshot_of_bodies
 from grainlaw.validation.grains.observation import Observation
 from grainlaw.validation.grains.observe import Setting, observe
+from grainlaw.validation.grains.snapshot import GrainSnapshot
 from grainlaw.validation.reference.reference_set import Ensemble
 from grainlaw.validation.scenes import advance
 
@@ -22,7 +28,10 @@ REACH = 1.8
 
 @dataclass(frozen=True)
 class Column:
-    """What the continuum takes from the packing: half width, height [m], bulk density [kg/m3], and when to look [s]."""
+    """What the continuum takes from the packing: half width, height [m], bulk density [kg/m3], and when to look [s].
+
+    In axisymmetry `half_width` is the radius.
+    """
 
     half_width: float
     height: float
@@ -32,17 +41,23 @@ class Column:
     gravity: float
     reach: float
     times: tuple[float, ...]
+    space: Space
 
 
 def column_of(ensemble: Ensemble) -> Column:
     """The mean column of all runs of a case; its density is that with which the mass is the same."""
     first = ensemble.runs[0].description
     diameter = float(np.mean([run.description["kernel_width"] for run in ensemble.runs]))
-    heights, areas, reaches = [], [], []
+    heights, solids, reaches = [], [], []
+    around, base = 1.0, 2.0 * ensemble.half_width
+    if ensemble.space.hoop:
+        around, base = 2.0 * np.pi, np.pi * ensemble.half_width**2
     for run in ensemble.runs:
+        weights = column_weights(run.x, run.space)
         middle = np.abs(run.x) < ensemble.half_width - SIDE_IN_WIDTHS * diameter
-        heights.append(run.surface[0][middle].mean())
-        areas.append(run.snapshots["solid_fraction"][0].sum() * (run.x[1] - run.x[0]) * (run.z[1] - run.z[0]))
+        heights.append(np.average(run.surface[0][middle], weights=weights[middle]))
+        solid = (weights[:, None] * run.snapshots["solid_fraction"][0]).sum() * (run.x[1] - run.x[0])
+        solids.append(around * solid * (run.z[1] - run.z[0]))
         reaches.append(run.of("runout")[-1])
     height = float(np.mean(heights))
     grain_density = float(first["grain_density"])
@@ -50,12 +65,13 @@ def column_of(ensemble: Ensemble) -> Column:
     return Column(
         half_width=ensemble.half_width,
         height=height,
-        density=grain_density * float(np.mean(areas)) / (2.0 * ensemble.half_width * height),
+        density=grain_density * float(np.mean(solids)) / (base * height),
         grain_density=grain_density,
         grain_diameter=diameter,
         gravity=float(first["gravity"]),
         reach=REACH * float(max(reaches)),
         times=tuple(found for found in longest.times.tolist() if found <= ensemble.end + 1e-9),
+        space=ensemble.space,
     )
 
 
@@ -66,7 +82,10 @@ def column_scene(column: Column, law: str, parameters: dict[str, float], cell_si
     width = round(column.half_width / half_cell) * half_cell
     density = column.density * column.height * column.half_width / (height * width)
     upper = [np.ceil(length / cell_size) * cell_size for length in (column.reach, 1.1 * height)]
-    return {
+    initial_stress: dict[str, Any] = {"kind": "geostatic"}
+    if not column.space.hoop:
+        initial_stress["out_of_plane_ratio"] = 0.5
+    scene: dict[str, Any] = {
         "title": f"DEM column, {law}",
         "gravity": [0.0, -column.gravity],
         "grid": {"cell_size": cell_size, "upper": [float(length) for length in upper]},
@@ -78,11 +97,13 @@ def column_scene(column: Column, law: str, parameters: dict[str, float], cell_si
                 "material": law,
                 "shape": {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [width, height]},
                 "density": density,
-                "initial_stress": {"kind": "geostatic", "out_of_plane_ratio": 0.5},
+                "initial_stress": initial_stress,
             }
         ],
         "output": {"fields": []},
     }
+    # The key of a run that is there already is made from its scene: plane strain goes without saying.
+    return scene | {"space": column.space.name} if column.space.hoop else scene
 
 
 def observed_column(content: dict[str, Any], column: Column, label: str) -> Observation:
@@ -91,12 +112,17 @@ def observed_column(content: dict[str, Any], column: Column, label: str) -> Obse
     Raises InputError for a scene that cannot be run and SimulationError if it breaks down.
     """
     simulation = Simulation(Scene.from_dict(content, label))
-    snapshots = [mirrored(snapshot_of_bodies(0.0, simulation.bodies, column.grain_density))]
+
+    def snapshot() -> GrainSnapshot:
+        half = snapshot_of_bodies(simulation.time, simulation.bodies, column.grain_density)
+        return half if column.space.hoop else mirrored(half)
+
+    snapshots = [snapshot()]
     # The first interval compiles the kernels; its cost is taken to be that of the others.
     started, first_steps = 0.0, 0
     for target in column.times[1:]:
         advance(simulation, target)
-        snapshots.append(mirrored(snapshot_of_bodies(simulation.time, simulation.bodies, column.grain_density)))
+        snapshots.append(snapshot())
         if first_steps == 0:
             started, first_steps = time.process_time(), simulation.steps
     cost = (time.process_time() - started) * simulation.steps / (simulation.steps - first_steps)
@@ -108,6 +134,7 @@ def observed_column(content: dict[str, Any], column: Column, label: str) -> Obse
         center=0.0,
         grain_density=column.grain_density,
         gravity=-simulation.scene.gravity[1],
+        space=column.space,
     )
     description = {"label": label, "scene": content, "cpu_time": cost, "points": points, "steps": simulation.steps}
     return observe(snapshots, setting, description)

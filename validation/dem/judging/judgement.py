@@ -88,7 +88,8 @@ class Bench:
         path = self.folder / RUNS / f"{law}_{key}.h5"
         if path.is_file() and is_observation(path):
             return read_observation(path)
-        self.announce(f"{name}, {column.height:.2f} m high, cells of {scene['grid']['cell_size'] * 1e3:g} mm")
+        shape = "cylinder" if column.space.hoop else "column"
+        self.announce(f"{name}, {shape} {column.height:.2f} m high, cells of {scene['grid']['cell_size'] * 1e3:g} mm")
         observation = observed_column(scene, column, name)
         path.parent.mkdir(parents=True, exist_ok=True)
         write_observation(path, observation)
