@@ -4,7 +4,7 @@ A run in 3D is compared with what it stands for: a plane column, over the depth 
 its axis.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -33,28 +33,38 @@ def observe_run(folder: Path, width: float, density: float | None = None, space:
     scene = Scene.load(folder / SCENE_NAME)
     bodies = build_bodies(scene)
     found = grain_density(bodies, density)
-    snapshots = snapshots_of_run(run, scene, found)
-    compared = space if scene.in_space.axes == 3 else scene.in_space
-    setting = Setting(
-        width=width,
-        depth=_depth(scene),
-        floor=scene.grid.lower[scene.in_space.up],
-        center=0.0,
-        grain_density=found,
-        gravity=-scene.gravity[scene.in_space.up],
-        space=compared,
-    )
-    if not scene.in_space.hoop:
-        corners = np.array([(body.positions.min(axis=1), body.positions.max(axis=1)) for body in bodies])
-        lowest, highest = corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)
-        place = _around_axis if compared.hoop else _along_slope
-        setting, snapshots = place(scene, setting, snapshots, lowest, highest)
+    setting, snapshots = as_grains(scene, bodies, snapshots_of_run(run, scene, found), width, found, space)
     return observe(snapshots, setting, _description(folder, scene, bodies))
 
 
-def _depth(scene: Scene) -> float:
-    """Over which the points of a plane column are averaged [m]."""
-    return scene.grid.upper[1] - scene.grid.lower[1] if scene.in_space.axes == 3 else DEPTH
+def as_grains(
+    scene: Scene,
+    bodies: Sequence[Body],
+    snapshots: Iterable[GrainSnapshot],
+    width: float,
+    density: float,
+    space: Space = PLANE_STRAIN,
+) -> tuple[Setting, Iterable[GrainSnapshot]]:
+    """How the points of a scene are observed, and the whole body where the scene holds half or a quarter of it.
+
+    `bodies` as they were at the start; the others as for `observe_run`.
+    """
+    up = scene.in_space.up
+    setting = Setting(
+        width=width,
+        depth=DEPTH,
+        floor=scene.grid.lower[up],
+        center=0.0,
+        grain_density=density,
+        gravity=-scene.gravity[up],
+        space=space if scene.in_space.axes == 3 else scene.in_space,
+    )
+    if scene.in_space.hoop:
+        return setting, snapshots
+    lowest = np.min([body.positions.min(axis=1) for body in bodies], axis=0)
+    highest = np.max([body.positions.max(axis=1) for body in bodies], axis=0)
+    place = _around_axis if setting.space.hoop else _along_slope
+    return place(scene, setting, snapshots, lowest, highest)
 
 
 def _is_halved(scene: Scene, axis: int, lowest: Array) -> bool:
@@ -64,9 +74,11 @@ def _is_halved(scene: Scene, axis: int, lowest: Array) -> bool:
 
 
 def _along_slope(
-    scene: Scene, setting: Setting, snapshots: Iterator[GrainSnapshot], lowest: Array, highest: Array
-) -> tuple[Setting, Iterator[GrainSnapshot]]:
-    """A plane column, mirrored where it is half of one."""
+    scene: Scene, setting: Setting, snapshots: Iterable[GrainSnapshot], lowest: Array, highest: Array
+) -> tuple[Setting, Iterable[GrainSnapshot]]:
+    """A plane column, over the depth of a domain in 3D, mirrored where it is half of one."""
+    if scene.in_space.axes == 3:
+        setting = replace(setting, depth=scene.grid.upper[1] - scene.grid.lower[1])
     if _is_halved(scene, 0, lowest):
         left = scene.grid.lower[0]
         return replace(setting, center=left), (mirrored(snapshot, left) for snapshot in snapshots)
@@ -74,8 +86,8 @@ def _along_slope(
 
 
 def _around_axis(
-    scene: Scene, setting: Setting, snapshots: Iterator[GrainSnapshot], lowest: Array, highest: Array
-) -> tuple[Setting, Iterator[GrainSnapshot]]:
+    scene: Scene, setting: Setting, snapshots: Iterable[GrainSnapshot], lowest: Array, highest: Array
+) -> tuple[Setting, Iterable[GrainSnapshot]]:
     """A cylinder in 3D, or the half or the quarter of one, whose points count for the others."""
     halved = [_is_halved(scene, axis, lowest) for axis in (0, 1)]
     x, y = (scene.grid.lower[axis] if halved[axis] else 0.5 * float(lowest[axis] + highest[axis]) for axis in (0, 1))

@@ -178,8 +178,8 @@ def cost_table(report: Report) -> Table:
                 rows.append((ensemble.title, judged.name, *cells, percent(area), judged.verdict))
     note = (
         "Seconds of one core. Grains: CPU time where a run told it, else wall time on a machine that also did other "
-        "work; the whole width and a depth of four grains, or the whole cylinder, without the settling. Laws: CPU time, "
-        "half of the column, or a radian."
+        "work; the whole width and a depth of four grains, or the whole cylinder, without the settling. Laws: CPU "
+        "time, half of the column, or a radian."
     )
     columns = ("column", "what", "s", "million grain- or point-steps", "million/s", "E_A", "verdict")
     return Table("Cost", note, columns, tuple(rows))
