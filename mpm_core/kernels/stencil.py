@@ -14,6 +14,8 @@ from grainlaw.mpm_core.space import Space
 
 # Points that a transfer takes through its parts together.
 GROUP = 64
+# In three dimensions, where a point has more of everything.
+GROUP_3D = 32
 
 
 class Axis(NamedTuple):

@@ -91,12 +91,14 @@ def make_bring_forward(space: Space, precision: str) -> Callable[..., Any]:
         works, volumes = buffers
         density, largest = rows[density_row], np.int64(0)
         for p in range(first, last):
+            works[p - first] = turned_power(rows, p, dt)
+        for p in range(first, last):
             increment = dt * volumetric_rate(rows, p)
             half_increment = 0.5 * (increment - coupling[p - first])
             # rho (1 - h)/(1 + h), and both volumes, from a single division
             grown, shrunk = 1.0 + half_increment, 1.0 - half_increment
             inverse = 1.0 / (density[p] * grown * shrunk)
-            works[p - first] = turned_power(rows, p, dt) * (inverse * grown * shrunk)
+            works[p - first] *= inverse * grown * shrunk
             volumes[p - first] = inverse * grown * grown
             # by which the density changes from rho to rho (1 - h)/(1 + h)
             scale, strain = density[p] * (density[p] * shrunk * inverse), -2.0 * half_increment

@@ -3,10 +3,12 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from grainlaw.mpm_core.kernels.bulk_3d import make_g2p_of_bulk, make_p2g_of_bulk
 from grainlaw.mpm_core.kernels.g2p import make_g2p
+from grainlaw.mpm_core.kernels.g2p_3d import make_g2p_3d
 from grainlaw.mpm_core.kernels.p2g import make_p2g
+from grainlaw.mpm_core.kernels.p2g_3d import make_p2g_3d
 from grainlaw.mpm_core.kernels.shape_functions import Basis
-from grainlaw.mpm_core.kernels.transfers_3d import make_g2p_3d, make_g2p_of_bulk, make_p2g_3d, make_p2g_of_bulk
 from grainlaw.mpm_core.space import Space
 
 

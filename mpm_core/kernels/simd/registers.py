@@ -11,6 +11,7 @@ that the width of the machine's registers changes the time, not the result.
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.datamodel.models import PrimitiveModel
@@ -113,6 +114,7 @@ def _loading(kind_of: Any) -> Any:
 _quad_at = _loading(lambda number: LanesType(types.float64, LANES))
 _single_quad_at = _loading(lambda number: LanesType(types.float32, LANES))
 _several_at = _loading(_several)
+_pair_at = _loading(lambda number: LanesType(number, 2))
 _oct_at = _loading(lambda number: LanesType(number, 2 * LANES))
 
 
@@ -224,20 +226,20 @@ def _put_transposed(typing_context: Any, vectors: Any, position: Any, components
 
 
 @intrinsic
-def _transposed_at(typing_context: Any, vectors: Any, position: Any) -> Any:
+def _transposed_at(typing_context: Any, vectors: Any, position: Any, stride: Any) -> Any:
     kind = _several(vectors.dtype)
     result = types.UniTuple(kind, LANES)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        array, position = arguments
-        places = [_further(builder, position, LANES * point) for point in range(kind.count)]
+        array, position, stride = arguments
+        places = [builder.add(position, builder.mul(stride, ir.Constant(stride.type, k))) for k in range(kind.count)]
         points = [load(context, builder, signature.args[0], array, place, LANES) for place in places]
         if kind.count > LANES:
             both = list(range(2 * LANES))
             points = [shuffled(builder, points[row], points[row + LANES], both) for row in range(LANES)]
         return context.make_tuple(builder, result, _transposed(builder, *points))
 
-    return result(vectors, position), generate
+    return result(vectors, position, stride), generate
 
 
 # What follows hands on, so that closures over it have the same mark in every process: that of an intrinsic is random,
@@ -260,6 +262,12 @@ def single_quad_at(array: Any, position: Any) -> Any:
 def several_at(array: Any, position: Any) -> Any:
     """The four doubles or eight singles from a position on."""
     return _several_at(array, position)
+
+
+@register_jitable(forceinline=True)
+def pair_at(array: Any, position: Any) -> Any:
+    """The two numbers from a position on, as they are stored."""
+    return _pair_at(array, position)
 
 
 @register_jitable(forceinline=True)
@@ -313,4 +321,10 @@ def put_transposed(vectors: Any, k: Any, components: Any) -> None:
 @register_jitable(forceinline=True)
 def transposed_at(vectors: Any, k: Any) -> Any:
     """Four components of four or eight points from k on, each component of them side by side."""
-    return _transposed_at(vectors, LANES * k)  # type: ignore[call-arg]
+    return _transposed_at(vectors, LANES * k, np.uint64(LANES))  # type: ignore[call-arg]
+
+
+@register_jitable(forceinline=True)
+def half_transposed_at(vectors: Any, k: Any, half: Any) -> Any:
+    """The first (0) or the last (1) four of eight components of the points from k on, each of them side by side."""
+    return _transposed_at(vectors, 2 * LANES * k + LANES * half, np.uint64(2 * LANES))  # type: ignore[call-arg]
