@@ -19,7 +19,7 @@ import math
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -63,13 +63,13 @@ def points_to_grid(x, v, c, stress, density, point_mass, grid_m, grid_v, h, dt):
 
 @njit(cache=True, error_model="numpy", fastmath=True)
 @named(MARK)
-def update_grid(grid_m, grid_v, gx, gy, friction, dt):  # type: ignore[no-untyped-def]
+def update_grid(grid_m, grid_v, gravity, friction, dt):  # type: ignore[no-untyped-def]
     """Momentum to velocity, gravity, friction at and below the floor, smooth walls."""
     for i in range(grid_m.shape[0]):
         for j in range(grid_m.shape[1]):
             if grid_m[i, j] > 0.0:
-                vx = grid_v[i, j, 0] / grid_m[i, j] + dt * gx
-                vy = grid_v[i, j, 1] / grid_m[i, j] + dt * gy
+                vx = grid_v[i, j, 0] / grid_m[i, j] + dt * gravity[0]
+                vy = grid_v[i, j, 1] / grid_m[i, j] + dt * gravity[1]
                 if j <= PADDING and vy < 0.0:
                     vx = np.copysign(max(0.0, abs(vx) + friction * vy), vx)
                     vy = 0.0
@@ -136,8 +136,19 @@ def make_update_stress(law: PointwiseLaw) -> Callable[..., Any]:
     return update_stress
 
 
+class Kernels(NamedTuple):
+    """The passes of a step."""
+
+    points_to_grid: Callable[..., None]
+    update_grid: Callable[..., None]
+    grid_to_points: Callable[..., None]
+    make_update_stress: Callable[[PointwiseLaw], Callable[..., Any]]
+
+
 class Yardstick:
     """The points of a library's simulation of one body, as plain arrays, and a grid over its whole domain."""
+
+    kernels = Kernels(points_to_grid, update_grid, grid_to_points, make_update_stress)
 
     def __init__(self, simulation: Simulation) -> None:
         scene, body = simulation.scene, simulation.bodies[0]
@@ -146,14 +157,14 @@ class Yardstick:
         self.lower = np.array(scene.grid.lower) - PADDING * self.h
         self.x = np.ascontiguousarray(body.positions.T) - self.lower
         self.v = np.ascontiguousarray(body.velocity.T)
-        self.c = np.zeros((body.count, 4))
+        self.c = np.zeros((body.count, self.x.shape[1] ** 2))
         self.stress = np.ascontiguousarray(body.stress.T)
         self.density = body.density.copy()
         self.states = np.ascontiguousarray(body.states.T)
         self.point_mass, self.parameters = body.point_mass, tuple(body.parameters)
-        shape = (scene.grid.cells[0] + 1 + 2 * PADDING, scene.grid.cells[1] + 1 + 2 * PADDING)
-        self.grid_m, self.grid_v = np.zeros(shape), np.zeros((*shape, 2))
-        self.update_stress = make_update_stress(pointwise_law(body.law))
+        shape = tuple(cells + 1 + 2 * PADDING for cells in scene.grid.cells)
+        self.grid_m, self.grid_v = np.zeros(shape), np.zeros((*shape, len(shape)))
+        self.update_stress = self.kernels.make_update_stress(pointwise_law(body.law))
         self.signal_speed, self.time, self.steps = simulation.signal_speed, 0.0, 0
         self.last_step = 0.0
         self.wave_factor = simulation.signal_bounds[0].wave_factor
@@ -167,11 +178,10 @@ class Yardstick:
         kick = 0.5 * (self.last_step + dt)
         self.grid_m[:] = 0.0
         self.grid_v[:] = 0.0
-        points_to_grid(
-            self.x, self.v, self.c, self.stress, self.density, self.point_mass, self.grid_m, self.grid_v, self.h, kick
-        )
-        update_grid(self.grid_m, self.grid_v, *self.gravity, self.friction, kick)
-        grid_to_points(self.x, self.v, self.c, self.grid_v, self.h, dt)
+        state, place = (self.x, self.v, self.c), (self.grid_m, self.grid_v, self.h)
+        self.kernels.points_to_grid(*state, self.stress, self.density, self.point_mass, *place, kick)
+        self.kernels.update_grid(self.grid_m, self.grid_v, self.gravity, self.friction, kick)
+        self.kernels.grid_to_points(*state, self.grid_v, self.h, dt)
         self.signal_speed = self.wave_factor * self.update_stress(
             self.v, self.c, self.stress, self.density, self.states, self.parameters, dt
         )

@@ -20,6 +20,7 @@ from grainlaw.mpm_core.kernels.p2g_3d import make_p2g_3d
 from grainlaw.mpm_core.kernels.positions import positions_of, put_positions
 from grainlaw.mpm_core.kernels.shape_functions import BASES, make_stencil
 from grainlaw.mpm_core.layout import allocate, layout_of
+from grainlaw.mpm_core.parallel.threads import use_threads
 from grainlaw.mpm_core.space import THREE_D
 
 LAYOUT, NODE = layout_of(THREE_D), NODE_OF[3]
@@ -28,6 +29,11 @@ CELL, CELLS, LOWER = 0.1, (5, 4, 6), (0.1, -0.2, 0.3)
 COUNT, POINT_MASS = 43, 0.7
 CASES = [*((basis, "double") for basis in BASES), ("quadratic", "single")]
 ROUND_OFF = {"double": 1e-13, "single": 1e-5}
+
+
+@pytest.fixture(autouse=True)
+def _one_thread():
+    use_threads(1)
 
 
 class Points:
