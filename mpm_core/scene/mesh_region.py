@@ -59,6 +59,10 @@ class MeshRegion(Shape):
         """The box around the region."""
         return self._region.bounds()
 
+    def triangles(self) -> Points:
+        """The triangles of the surface of a region in 3D, shape (m, 3, 3) [m]; none of one in the plane."""
+        return self._region.triangles if isinstance(self._region, Surface) else np.empty((0, 3, 3))
+
     def contains(self, points: Points) -> NDArray[np.bool_]:
         """Inside, or on the lower, left and front sides of the region."""
         return self._region.contains(points)

@@ -17,6 +17,9 @@ from grainlaw.mpm_core.scene.solids import Box, Cylinder, Sphere
 
 Floats = NDArray[np.float64]
 
+# Distances on the grid of a mesh, at most, and cells that it reaches beyond the mesh.
+MOST_DISTANCES, MARGIN = 8e6, 2.0
+
 
 class Placed(NamedTuple):
     """A surface in its frame, the frame's position [m] (its centre of mass) and rotation, and what it measures.
@@ -37,8 +40,53 @@ def placed(shape: AnyObstacleShape, grid: GridSection) -> Placed:
     if isinstance(shape, Terrain):
         return _terrain(shape, grid)
     if isinstance(shape, MeshRegion):
-        raise ValueError(f"mesh file {shape.file}: meshes are not obstacles yet")
+        return _mesh(shape, grid)
     return _OF_SHAPES[type(shape)](shape)
+
+
+def _mesh(shape: MeshRegion, grid: GridSection) -> Placed:
+    """Distances of a closed surface of triangles, on a grid of half the size of a cell, or coarser for a large one.
+
+    The frame stands in the centre of mass; inertia counts about the axes of space through it (Eberly 2002, Polyhedral
+    Mass Properties, by the divergence theorem for each triangle).
+    """
+    if len(shape.bounds()[0]) != 3:
+        raise ValueError(f"mesh file {shape.file} lies in the x-y plane; allowed: a closed surface or tetrahedra")
+    lower, upper = map(np.array, shape.bounds())
+    volume, center, inertia = _mass_properties(shape.triangles())
+    spacing = max(0.5 * grid.cell_size, float((np.prod(upper - lower) / MOST_DISTANCES) ** (1.0 / 3.0)))
+    # as far around it as a point reaches
+    start = lower - center - MARGIN * grid.cell_size
+    counts = np.ceil((upper - lower + 2.0 * MARGIN * grid.cell_size) / spacing).astype(int) + 1
+    distances = _distances_of_triangles(shape.triangles() - center, start, spacing, counts, volume < 0.0)
+    return _placed(surfaces.distance_grid(start.tolist(), spacing, distances), tuple(center), abs(volume), inertia)
+
+
+def _distances_of_triangles(
+    triangles: Floats, start: Floats, spacing: float, counts: NDArray[np.int64], is_inside_out: bool
+) -> Floats:
+    """Signed distances on a regular grid from triangles, shape (m, 3, 3); negative behind them, or before them."""
+    import pyvista
+
+    faces = np.column_stack([np.full(len(triangles), 3), np.arange(3 * len(triangles)).reshape(-1, 3)])
+    surface = pyvista.PolyData(triangles.reshape(-1, 3), faces.ravel()).clean()
+    image = pyvista.ImageData(dimensions=counts.tolist(), spacing=(spacing,) * 3, origin=start.tolist())
+    found = image.compute_implicit_distance(surface)["implicit_distance"]
+    distances = np.asarray(found, np.float64).reshape(counts[::-1]).transpose(2, 1, 0)
+    return np.ascontiguousarray(-distances if is_inside_out else distances)
+
+
+def _mass_properties(triangles: Floats) -> tuple[float, Floats, Floats]:
+    """Volume [m3], negative if the triangles face inwards, centre of mass [m] and inertia over the density [m5]."""
+    first, second, third = np.moveaxis(triangles, 1, 0)
+    # of the tetrahedra between the origin and each triangle
+    volumes = np.einsum("ij,ij->i", first, np.cross(second, third)) / 6.0
+    volume = float(volumes.sum())
+    sums = first + second + third
+    center = np.asarray((volumes[:, np.newaxis] * sums).sum(axis=0) / (4.0 * volume))
+    squares = (volumes[:, np.newaxis] * (sums**2 + first**2 + second**2 + third**2)).sum(axis=0) / 20.0
+    squares = np.abs(squares) - abs(volume) * center**2
+    return volume, center, squares.sum() - squares
 
 
 def _placed(surface: Surface, center: tuple[float, ...], volume: float, inertia: float | Floats) -> Placed:
