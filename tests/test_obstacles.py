@@ -4,14 +4,20 @@ import math
 
 import numpy as np
 import pytest
+import trimesh
 from scenes_for_tests import ELASTIC, MU_I_LC, changed, simulation
 
 from grainlaw.materials import InputError
+from grainlaw.materials.errors import InputWarning
 from grainlaw.mpm_core import Scene
 from grainlaw.mpm_core.obstacles import surface as surfaces
 from grainlaw.mpm_core.obstacles.contact import distances
 from grainlaw.mpm_core.obstacles.motion import Steady, at_rest
 from grainlaw.mpm_core.obstacles.obstacle import Obstacle
+from grainlaw.mpm_core.output.checkpoint import Clock, read_checkpoint, write_checkpoint
+from grainlaw.mpm_core.scene.mesh_region import MeshRegion
+from grainlaw.mpm_core.scene.model import GridSection
+from grainlaw.mpm_core.scene.obstacle_surfaces import placed
 
 G = 9.81
 STIFF = {"bulk_modulus": 1e6, "poisson_ratio": 0.2}
@@ -222,3 +228,76 @@ def test_scenes_with_obstacles_survive_being_written_and_read():
     import tomllib
 
     assert Scene.from_dict(tomllib.loads(scene.to_toml())) == scene
+
+
+STIRRED = {
+    "obstacle": [
+        BOX["obstacle"][0],
+        {
+            "name": "paddle",
+            "friction": 0.4,
+            "shape": {"kind": "line", "points": [[0.15, 0.2], [0.35, 0.2]], "thickness": 0.08},
+            "angular_velocity": 6.0,
+        },
+    ],
+    "body.0.shape.lower": [0.0, 0.26],
+    "body.0.shape.upper": [0.5, 0.4],
+    "precision": "single",
+}
+
+
+def end_of(case):
+    (body,) = case.bodies
+    return body.points.tobytes(), case.obstacles.all[1].state.tobytes(), case.ledger
+
+
+def test_a_turning_obstacle_gives_the_same_bits_on_two_threads_and_from_a_checkpoint(tmp_path):
+    one, two = (simulation(BOX, STIRRED, threads) for threads in (1, 2))
+    for case in (one, two):
+        case.advance_to(0.05)
+    write_checkpoint(tmp_path, one, Clock())
+    resumed = simulation(BOX, STIRRED)
+    read_checkpoint(tmp_path, resumed)
+    for case in (one, two, resumed):
+        case.advance_to(0.1)
+    assert end_of(one) == end_of(two) == end_of(resumed)
+    assert one.obstacles.all[1].forces.moment[2] != 0.0
+
+
+@pytest.mark.parametrize("speed", [5.0, 50.0])
+@pytest.mark.parametrize("thickness", [0.1, 0.5, 2.0])
+def test_nothing_is_shot_through_a_plate(speed, thickness):
+    plate = {"kind": "line", "points": [[-0.1, 0.06], [0.6, 0.06]], "thickness": thickness * 0.025}
+    changes = {
+        "obstacle": [{"name": "plate", "friction": 0.3, "shape": plate}],
+        "body.0.velocity": [0.0, -speed],
+        "body.0.initial_stress": {"kind": "none"},
+        "boundary.bottom": "free_slip",
+        "grid.upper": [0.5, 3.0],
+    }
+    case = simulation(BOX, changes)
+    case.advance_to(0.02 if speed < 10.0 else 0.004)
+    (body,) = case.bodies
+    energy = 0.5 * float(body.masses.sum()) * speed**2
+    assert body.positions[1].min() > 0.06
+    assert case.ledger.kinetic < energy
+    assert case.ledger.numerical_dissipation > -1e-3 * energy
+
+
+def test_thin_plates_are_warned_about():
+    plate = {"kind": "line", "points": [[-0.1, 0.06], [0.6, 0.06]], "thickness": 0.01}
+    with pytest.warns(InputWarning, match=r"obstacle 'plate' is 0.01 m thick, 0.4 cells"):
+        simulation(BOX, {"obstacle": [{"name": "plate", "friction": 0.3, "shape": plate}]})
+
+
+def test_a_closed_mesh_has_the_distances_mass_and_inertia_of_what_it_bounds(tmp_path):
+    mesh = trimesh.creation.box([0.4, 0.6, 0.8])
+    mesh.apply_translation([1.0, 1.0, 1.0])
+    mesh.export(tmp_path / "box.stl")
+    shape = MeshRegion(kind="mesh", file=tmp_path / "box.stl")
+    found = placed(shape, GridSection(cell_size=0.1, lower=(0, 0, 0), upper=(2, 2, 2)))
+    np.testing.assert_allclose(found.position, 1.0, atol=1e-6)
+    assert found.volume == pytest.approx(0.192, rel=1e-6)
+    np.testing.assert_allclose(found.inertia, 0.192 / 12.0 * np.array([1.0, 0.8, 0.52]), rtol=1e-6)
+    inside = at(found.surface, (0.0, 0.0, 0.0), (0.15, 0.0, 0.0), (0.3, 0.0, 0.0), space_axes=3)
+    np.testing.assert_allclose(inside, [-0.2, -0.05, 0.1], atol=5e-3)

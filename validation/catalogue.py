@@ -61,6 +61,8 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "collapses.invariances.moving_frame",
         "collapses.invariances.turned_scene",
     ),
+    # Obstacles and what flows past them.
+    "obstacles": ("obstacles.turned_plane", "obstacles.hopper_discharge"),
     # What accuracy costs.
     "speed": ("speed.sleeping", "speed.speed_error"),
 }
