@@ -287,7 +287,7 @@ class Simulation:
         settings = self.scene.sleep
         if settings.speed is None:
             return None
-        return Sleep(settings, self.bodies, self.grid, self.basis, self.periodic_axes)
+        return Sleep(settings, self.bodies, self.grid, self.basis, self.periodic_axes, self.obstacles)
 
     def _let_sleep(self, sleep: Sleep) -> None:
         """Wake what something moves, and let fall asleep what rests."""

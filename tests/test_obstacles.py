@@ -301,3 +301,21 @@ def test_a_closed_mesh_has_the_distances_mass_and_inertia_of_what_it_bounds(tmp_
     np.testing.assert_allclose(found.inertia, 0.192 / 12.0 * np.array([1.0, 0.8, 0.52]), rtol=1e-6)
     inside = at(found.surface, (0.0, 0.0, 0.0), (0.15, 0.0, 0.0), (0.3, 0.0, 0.0), space_axes=3)
     np.testing.assert_allclose(inside, [-0.2, -0.05, 0.1], atol=5e-3)
+
+
+def test_what_sleeps_wakes_before_an_obstacle_that_moves_and_not_before_one_that_rests():
+    # a sinker that comes down through the air; below it the sand has gone to sleep
+    times = {"time": [0.0, 0.1, 0.2], "displacement": [[0.0, 0.0], [0.0, 0.0], [0.0, -0.15]]}
+    sinker = {"name": "sinker", "friction": 0.3, "shape": {"kind": "disc", "center": [0.25, 0.46], "radius": 0.05}}
+    changes = {"sleep": {"speed": 5e-3, "window": 0.02}, "obstacle": [BOX["obstacle"][0], sinker]}
+    resting = simulation(BOX, changes)
+    sinking = simulation(BOX, {**changes, "obstacle": [BOX["obstacle"][0], {**sinker, "motion": times}]})
+    awake = []
+    for case in (resting, sinking):
+        for time in (0.09, 0.2):
+            case.advance_to(time)
+            awake.append(case.bodies[0].awake)
+    assert awake[0] == awake[1] == awake[2] == 0
+    assert awake[3] > 50
+    depth = sinking.bodies[0].positions[:, np.abs(sinking.bodies[0].positions[0] - 0.25) < 0.02][1].max()
+    assert depth < 0.28

@@ -10,7 +10,7 @@ from grainlaw.mpm_core.grid.active_nodes import DRIFT
 from grainlaw.mpm_core.grid.cell_volumes import CellWindow, Room
 from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.kernels.shape_functions import Basis
-from grainlaw.mpm_core.obstacles.contact import ObstacleContact, TakenByObstacles
+from grainlaw.mpm_core.obstacles.contact import ObstacleContact, TakenByObstacles, distances
 from grainlaw.mpm_core.obstacles.free_room import FreeRoom
 from grainlaw.mpm_core.obstacles.obstacle import Obstacle
 
@@ -47,6 +47,14 @@ class Obstacles:
     def find_contacts(self, bodies: Sequence[Body], grid: Grid, basis: Basis) -> None:
         """Find the points that may touch before the next sort."""
         self._contact = ObstacleContact(self.present, bodies, grid, basis, DRIFT) if self.present else None
+
+    def is_stirring(self, positions: NDArray[np.float64], reach: float) -> NDArray[np.bool_]:
+        """Which of the places, shape (axes, n) [m], lie within a reach [m] of an obstacle that moves."""
+        near = np.zeros(positions.shape[1], np.bool_)
+        for obstacle in self.present:
+            if obstacle.largest_speed > 0.0:
+                near |= distances(obstacle, positions) < reach
+        return near
 
     def take_away(self, time: float) -> bool:
         """Leave out those that are not there any more at a time [s]; returns whether there were any."""

@@ -8,9 +8,9 @@ place of zeros. They bring no momentum, and their state does not change.
 Asleep. What sleeps is rigid: nodes with sleeping mass are held, after the walls have done their part. The momentum that
 is withheld from a node in each step is summed up over the window.
 
-Waking. Where that sum exceeds the momentum of a full cell at `WAKING` times `speed`, the points in `RING` nodes around
-wake; every `STEPS_PER_LOOK` steps somebody looks, in which time no wave gets out of the ring (with steps of the usual
-safety).
+Waking. What lies in `RING` cells around an obstacle that moves wakes, and does not fall asleep. Where that sum exceeds
+the momentum of a full cell at `WAKING` times `speed`, the points in `RING` nodes around wake; every `STEPS_PER_LOOK`
+steps somebody looks, in which time no wave gets out of the ring (with steps of the usual safety).
 
 Error. A point that would have gone on creeping as it did stays behind by `speed` times the time that it slept, and the
 force that holds a node is, in the mean of a window, less than that which gives a full cell an acceleration of
@@ -41,6 +41,7 @@ from grainlaw.mpm_core.kernels.sleepers import (
     nodes_to_wake,
     spread,
 )
+from grainlaw.mpm_core.obstacles.obstacles import Obstacles
 from grainlaw.mpm_core.scene.model import SleepSection
 
 # The momentum withheld from a node that wakes it, over that of a full cell at the speed below which points fall asleep.
@@ -60,7 +61,13 @@ class Sleep:
     """
 
     def __init__(
-        self, settings: SleepSection, bodies: Sequence[Body], grid: Grid, basis: Basis, periodic_axes: Sequence[int]
+        self,
+        settings: SleepSection,
+        bodies: Sequence[Body],
+        grid: Grid,
+        basis: Basis,
+        periodic_axes: Sequence[int],
+        obstacles: Obstacles,
     ) -> None:
         self.speed = settings.speed or 0.0
         self.window = settings.window
@@ -68,6 +75,7 @@ class Sleep:
         self.grid = grid
         self.basis = basis
         self.periodic_axes = periodic_axes
+        self.obstacles = obstacles
         # Before the first window: one that ends when that is to begin, in which every point came from far away.
         self.started = settings.start - settings.window
         self.positions = [np.full((grid.space.axes, body.count), np.inf) for body in bodies]
@@ -109,9 +117,13 @@ class Sleep:
         """Wake what is near an active node from which too much is withheld; returns whether anything woke."""
         waking = self.full * WAKING * self.speed
         to_wake = nodes_to_wake(self.withheld, waking * waking, self.grid.shape[-1], active.columns)
-        if not to_wake.any():
+        stirred = np.pad(to_wake.reshape(self.grid.shape), RING)
+        for body in self.bodies:
+            asleep = body.positions[:, body.awake :]
+            mark_first_nodes(asleep[:, self._is_stirred(asleep)], *self._on_marks(stirred))
+        if not stirred.any():
             return False
-        stirred = spread(np.pad(to_wake.reshape(self.grid.shape), RING), RING, RING)
+        stirred = spread(stirred, RING, RING)
         self._join(stirred)
         on_grid = stirred[(slice(RING, -RING),) * stirred.ndim]
         self.withheld[on_grid.reshape(-1)] = 0.0
@@ -131,7 +143,8 @@ class Sleep:
         for body, positions in zip(self.bodies, self.positions, strict=True):
             ways = body.positions - positions[:, body.ids - body.first_id]
             displaced = np.sqrt((ways**2).sum(axis=0)) > self.speed * (time - self.started)
-            mark_first_nodes(body.positions[:, displaced], *self._on_marks(stirred))
+            moving = displaced | self._is_stirred(body.positions)
+            mark_first_nodes(body.positions[:, moving], *self._on_marks(stirred))
         stirred = spread(stirred, RING, RING + self.basis.width - 1)
         self._join(stirred)
         fell = False
@@ -143,6 +156,10 @@ class Sleep:
                 fell = True
         self.open_window(time)
         return fell
+
+    def _is_stirred(self, positions: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Which places lie around an obstacle that moves."""
+        return self.obstacles.is_stirring(positions, RING * self.grid.cell_size)
 
     def bring_sleepers(self) -> None:
         """Scatter anew what the sleeping points bring, after some woke or fell asleep."""
