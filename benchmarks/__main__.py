@@ -14,7 +14,7 @@ from benchmarks.forecasts import SCENES as FORECAST_SCENES
 from benchmarks.machine import machine_description
 from benchmarks.memory import memory_per_point
 from benchmarks.passes import pass_times
-from benchmarks.race import race
+from benchmarks.race import THREE_D, race
 from benchmarks.report import Table, print_table, write
 from benchmarks.roofline import Roofline, measured_roofline
 from benchmarks.sizes import cost_over_domain, cost_over_size
@@ -39,6 +39,7 @@ class Part(StrEnum):
 
     PASSES = "passes"
     YARDSTICK = "yardstick"
+    YARDSTICK_3D = "yardstick-3d"
     SIZES = "sizes"
     CORES = "cores"
     DOMAIN = "domain"
@@ -55,10 +56,12 @@ class Precision(StrEnum):
 
 @dataclass(frozen=True)
 class Effort:
-    """How large and how long: cell size [m] and end [s] of the race, points of the other parts, rounds; precision."""
+    """How large and how long: cell size [m] and end [s] of the races, points of the other parts, rounds; precision."""
 
     cell_size: float
     end: float
+    cell_size_3d: float
+    end_3d: float
     sizes: tuple[float, ...]
     rounds: int
     pass_steps: int
@@ -70,6 +73,8 @@ class Effort:
 FULL = Effort(
     cell_size=0.00625,
     end=1.5,
+    cell_size_3d=0.0125,
+    end_3d=0.4,
     sizes=(1e4, 1e5, 4e5, 1.6e6, 4e6),
     rounds=5,
     pass_steps=300,
@@ -79,6 +84,8 @@ FULL = Effort(
 QUICK = Effort(
     cell_size=0.05,
     end=0.02,
+    cell_size_3d=0.05,
+    end_3d=0.02,
     sizes=(1e3, 4e3),
     rounds=1,
     pass_steps=20,
@@ -106,8 +113,10 @@ def main(
         list[Part] | None, typer.Argument(metavar="[PART]...", help="What to measure; default: all.")
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="So small that the numbers mean nothing.")] = False,
-    end: Annotated[float | None, typer.Option("--end", help="End of the race with the yardstick [s].")] = None,
-    cell_size: Annotated[float | None, typer.Option("--cell-size", help="Of the race and the passes [m].")] = None,
+    end: Annotated[float | None, typer.Option("--end", help="End of the races with the yardsticks [s].")] = None,
+    cell_size: Annotated[
+        float | None, typer.Option("--cell-size", help="In plane strain, of the race and the passes [m].")
+    ] = None,
     material: Annotated[list[str] | None, typer.Option("--material", help=f"Of {', '.join(SCENES)}.")] = None,
     precision: Annotated[
         Precision, typer.Option("--precision", help="Of the library; the race runs in both.")
@@ -117,7 +126,7 @@ def main(
     """Time the library: pass by pass against the roofline, against the yardstick, over size, domain and memory."""
     chosen = QUICK if quick else FULL
     size, last = cell_size or chosen.cell_size, end or chosen.end
-    effort = replace(chosen, cell_size=size, end=last, precision=precision.value)
+    effort = replace(chosen, cell_size=size, end=last, end_3d=end or chosen.end_3d, precision=precision.value)
     materials = material or list(SCENES)
     record = Record()
     machine = machine_description()
@@ -141,7 +150,13 @@ def _passes(record: Record, materials: list[str], effort: Effort, roofline: Roof
 def _yardstick(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
     for material in materials:
         found = race(material, effort.cell_size, effort.end, _threads())
-        record.add("yardstick", found, race_table(material, found))
+        record.add("yardstick", found, race_table("The paper's collapse", material, found))
+
+
+def _yardstick_3d(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+    for material in materials:
+        found = race(material, effort.cell_size_3d, effort.end_3d, _threads(), THREE_D)
+        record.add("yardstick-3d", found, race_table("Collapse of a cylinder", material, found))
 
 
 def _sizes(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
@@ -183,6 +198,7 @@ def _threads() -> list[int]:
 MEASURES: dict[Part, Callable[[Record, list[str], Effort, Roofline], None]] = {
     Part.PASSES: _passes,
     Part.YARDSTICK: _yardstick,
+    Part.YARDSTICK_3D: _yardstick_3d,
     Part.SIZES: _sizes,
     Part.CORES: _two_cores,
     Part.DOMAIN: _domain,

@@ -11,7 +11,7 @@ RADIUS, HEIGHT = 0.15, 0.3
 POINTS_PER_CELL = 8
 
 
-def cylinder(material: str, cell_size: float, changes: dict[str, Any] | None = None) -> Simulation:
+def cylinder(material: str, cell_size: float, changes: dict[str, Any]) -> Simulation:
     """The cylinder of the material of one of `SCENES`, on cells of the given size [m], with values by dotted key."""
     shape = {"kind": "cylinder", "center": [0.0, 0.0, 0.0], "radius": RADIUS, "height": HEIGHT}
     in_space = {
@@ -25,4 +25,4 @@ def cylinder(material: str, cell_size: float, changes: dict[str, Any] | None = N
         "body.0.initial_stress": {"kind": "geostatic"},
         "output.fields": [],
     }
-    return Simulation(Scene.load(shipped_scenes()[SCENES[material]], {**in_space, **(changes or {})}))
+    return Simulation(Scene.load(shipped_scenes()[SCENES[material]], {**in_space, **changes}))

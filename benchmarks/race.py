@@ -1,19 +1,33 @@
-"""The paper's collapse, run by the library and by the yardstick in turns."""
+"""A collapse, run by the library and by the yardstick in turns: the paper's column, or a cylinder."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import product
+from typing import Any
 
 import numpy as np
 
+from benchmarks.cylinders import cylinder
 from benchmarks.timing import Duration, Spread, spread, timed
 from benchmarks.yardstick import Yardstick
+from benchmarks.yardstick_3d import Yardstick3D
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.cases.collapses.column import collapse
 
 YARDSTICK = "yardstick"
 LAPS = 60
+
+
+@dataclass(frozen=True)
+class Course:
+    """What is run: the simulation of a material on cells of a size [m], with changes by dotted key; the yardstick."""
+
+    simulation: Callable[[str, float, dict[str, Any]], Simulation]
+    yardstick: type[Yardstick]
+
+
+PLANE, THREE_D = Course(collapse, Yardstick), Course(cylinder, Yardstick3D)
 
 
 @dataclass
@@ -50,15 +64,17 @@ class Result:
     cpu_ratio: float | None
 
 
-def race(material: str, cell_size: float, end: float, threads: Sequence[int] = (1, 2)) -> list[Result]:
+def race(
+    material: str, cell_size: float, end: float, threads: Sequence[int] = (1, 2), course: Course = PLANE
+) -> list[Result]:
     """Lead all contestants to `end` [s] in laps: first a short one, not counted, that compiles.
 
     The library runs in both precisions, the yardstick in double.
     """
     kinds = product(PRECISIONS, threads)
-    contestants = [_library(material, cell_size, precision, count) for precision, count in kinds]
+    contestants = [_library(course, material, cell_size, precision, count) for precision, count in kinds]
     points = contestants[0].program.bodies[0].count  # type: ignore[union-attr]
-    contestants.append(_yardstick(material, cell_size))
+    contestants.append(_yardstick(course, material, cell_size))
     for one in contestants:
         one.advance_to(end / 1e3)
     for lap_end in np.linspace(end / 1e3, end, LAPS + 1)[1:]:
@@ -67,15 +83,15 @@ def race(material: str, cell_size: float, end: float, threads: Sequence[int] = (
     return [_result(one, contestants[-1], points) for one in contestants]
 
 
-def _library(material: str, cell_size: float, precision: str, threads: int) -> Contestant:
-    simulation = collapse(material, cell_size, {"precision": precision})
+def _library(course: Course, material: str, cell_size: float, precision: str, threads: int) -> Contestant:
+    simulation = course.simulation(material, cell_size, {"precision": precision})
     simulation.threads = threads
     name = f"library, {precision}, {threads} thread(s)"
     return Contestant(name, simulation, simulation.advance_to)
 
 
-def _yardstick(material: str, cell_size: float) -> Contestant:
-    yardstick = Yardstick(collapse(material, cell_size))
+def _yardstick(course: Course, material: str, cell_size: float) -> Contestant:
+    yardstick = course.yardstick(course.simulation(material, cell_size, {}))
     return Contestant(YARDSTICK, yardstick, yardstick.advance_to)
 
 

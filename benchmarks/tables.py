@@ -30,7 +30,7 @@ def roofline_table(roofline: Roofline) -> Table:
     return Table("Roofline of one core", ("loop", "rate"), tuple(rows))
 
 
-def race_table(material: str, results: Sequence[Result]) -> Table:
+def race_table(what: str, material: str, results: Sequence[Result]) -> Table:
     """The library against the yardstick."""
     headings = (
         *("program", "steps", "wall [s]", "million point-steps/s", "lap by lap"),
@@ -49,7 +49,7 @@ def race_table(material: str, results: Sequence[Result]) -> Table:
         )
         for result in results
     )
-    return Table(f"The paper's collapse, {material}", headings, rows)
+    return Table(f"{what}, {material}", headings, rows)
 
 
 def pass_table(material: str, passes: Sequence[PassTime]) -> Table:

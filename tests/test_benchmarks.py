@@ -11,8 +11,10 @@ import pytest
 from scenes_for_tests import CAM_CLAY, COLUMN, simulation
 
 from benchmarks.columns import cell_size_for, make_steps, moving_column
+from benchmarks.cylinders import cylinder
 from benchmarks.roofline import Roofline
 from benchmarks.yardstick import Yardstick
+from benchmarks.yardstick_3d import Yardstick3D
 from grainlaw.mpm_core.parallel.threads import cores
 from grainlaw.validation.cases.collapses.column import collapse
 
@@ -25,7 +27,7 @@ def test_one_command_measures_prints_and_stores_everything(tmp_path):
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
     numbers = json.loads((tmp_path / "benchmark.json").read_text())
     page = (tmp_path / "benchmark.md").read_text()
-    parts = {"machine", "roofline", "passes", "yardstick", "sizes", "domain", "memory", "plans"}
+    parts = {"machine", "roofline", "passes", "yardstick", "yardstick-3d", "sizes", "domain", "memory", "plans"}
     assert set(numbers) == parts | ({"cores"} if cores() > 1 else set())
     for tables in numbers.values():
         for title in tables:
@@ -34,9 +36,10 @@ def test_one_command_measures_prints_and_stores_everything(tmp_path):
     (passes,) = numbers["passes"].values()
     assert {"grid update", "P2G", "G2P", "stress update", "rest"} <= {found["name"] for found in passes}
     assert sum(found["share"] for found in passes) == pytest.approx(1.0)
-    (race,) = numbers["yardstick"].values()
-    assert race[-1]["name"] == "yardstick"
-    assert all(found["steps"] > 0 and found["rate"] > 0.0 for found in race)
+    for part in ("yardstick", "yardstick-3d"):
+        (race,) = numbers[part].values()
+        assert race[-1]["name"] == "yardstick"
+        assert all(found["steps"] > 0 and found["rate"] > 0.0 for found in race)
     (machine,) = numbers["machine"].values()
     assert all(machine.values())
 
@@ -53,6 +56,18 @@ def test_the_yardstick_is_no_straw_man_and_comes_to_the_pile_of_the_library():
     assert heights[1] == pytest.approx(heights[0], abs=0.6 * cell_size)
     assert widths[1] == pytest.approx(widths[0], rel=0.04)
     assert heights[0] < 0.2  # from 0.45 m at the start
+
+
+def test_the_yardstick_in_three_dimensions_comes_to_the_pile_of_the_library():
+    cell_size = 0.025
+    library = cylinder("mu(I)-LC", cell_size, {"transfer.scheme": "apic", "transfer.volume_projection": False})
+    yardstick = Yardstick3D(library)
+    library.advance_to(0.25)
+    yardstick.advance_to(0.25)
+    places, others = library.bodies[0].positions, (yardstick.x + yardstick.lower).T
+    assert others[2].mean() == pytest.approx(places[2].mean(), abs=0.6 * cell_size)
+    assert others[:2].std(axis=1) == pytest.approx(places[:2].std(axis=1), rel=0.04)
+    assert places[2].mean() < 0.12  # from 0.15 m at the start
 
 
 def test_bandwidth_between_measured_sizes():

@@ -13,7 +13,13 @@ from grainlaw.materials.elementary import fused
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.materials.single_precision import adaptable, in_precision
 from grainlaw.materials.tensor import SymmetricTensor, contraction
-from grainlaw.mpm_core.kernels.rotation import at_end_of_step, rotated, rotated_tensor, rotation_matrix
+from grainlaw.mpm_core.kernels.rotation import (
+    at_end_of_step,
+    at_end_of_step_3d,
+    rotated,
+    rotated_tensor,
+    rotation_matrix,
+)
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.layout import layout_of
 from grainlaw.mpm_core.space import Space
@@ -148,9 +154,9 @@ def _in_three_dimensions(space: Space, precision: str) -> Kinematics:
 
     @adaptable
     @named(mark)
-    def half_rotation(rows, p, dt):  # type: ignore[no-untyped-def]
+    def half_angle(rows, p, dt):  # type: ignore[no-untyped-def]
         quarter = 0.25 * dt
-        return rotation_matrix(
+        return (
             quarter * (number(rows[lzy][p]) - number(rows[lyz][p])),
             quarter * (number(rows[lxz][p]) - number(rows[lzx][p])),
             quarter * (number(rows[lyx][p]) - number(rows[lxy][p])),
@@ -159,16 +165,16 @@ def _in_three_dimensions(space: Space, precision: str) -> Kinematics:
     @adaptable
     @named(mark)
     def strain_rate(rows, p, dt):  # type: ignore[no-untyped-def]
-        return rotated_tensor(motion(rows, p), half_rotation(rows, p, dt))
+        x, y, z = half_angle(rows, p, dt)
+        return at_end_of_step_3d(motion(rows, p), x, y, z)
 
     @adaptable
     @named(mark)
     def turned_power(rows, p, dt):  # type: ignore[no-untyped-def]
-        half = half_rotation(rows, p, dt)
-        rate, stress = rotated_tensor(motion(rows, p), half), rotated_tensor(stress_at(rows, p), half)
-        stress = rotated_tensor(stress, half)
+        x, y, z = half_angle(rows, p, dt)
+        stress = rotated_tensor(stress_at(rows, p), rotation_matrix(x + x, y + y, z + z))
         put_stress(rows, p, stress)
-        return contraction(stress, rate)
+        return contraction(stress, at_end_of_step_3d(motion(rows, p), x, y, z))
 
     @adaptable
     @named(mark)

@@ -70,3 +70,24 @@ def rotated_tensor(s, r):  # type: ignore[no-untyped-def]
         d * zx + e * zy + f * zz,
         a * zx + b * zy + c * zz,
     )
+
+
+@adaptable
+def turning_rate(s, x, y, z):  # type: ignore[no-untyped-def]
+    """K s - s K of a symmetric tensor, with K of the vector (x, y, z)."""
+    in_z, in_x, in_y = x * s.yz - y * s.xz, y * s.xz - z * s.xy, z * s.xy - x * s.yz
+    return SymmetricTensor(
+        in_x + in_x,
+        in_y + in_y,
+        in_z + in_z,
+        z * (s.xx - s.yy) + y * s.yz - x * s.xz,
+        x * (s.yy - s.zz) + z * s.xz - y * s.xy,
+        y * (s.zz - s.xx) + x * s.xy - z * s.yz,
+    )
+
+
+@adaptable
+def at_end_of_step_3d(rate, x, y, z):  # type: ignore[no-untyped-def]
+    """A strain rate after the rotation by a vector, to its second order."""
+    first = turning_rate(rate, x, y, z)
+    return rate + first + 0.5 * turning_rate(first, x, y, z)
