@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grainlaw.materials import InputError
-from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
+from grainlaw.mpm_core.scene.body_section import BodySection, InitialStressSection
+from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.scene.shapes import points_along_edge
 
 Floats = NDArray[np.float64]

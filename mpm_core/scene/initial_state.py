@@ -13,8 +13,9 @@ from grainlaw.materials.law import Law
 from grainlaw.mpm_core.body import POINTS_AT_ONCE, Body
 from grainlaw.mpm_core.kernels.positions import put_density, put_positions
 from grainlaw.mpm_core.layout import Layout, allocate, layout_of
+from grainlaw.mpm_core.scene.body_section import BodySection, InitialStressSection
 from grainlaw.mpm_core.scene.geostatic import vertical_stresses
-from grainlaw.mpm_core.scene.model import BodySection, InitialStressSection, Scene
+from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.scene.shapes import points_along_edge
 from grainlaw.mpm_core.space import Space
 from grainlaw.mpm_core.stepping.peak_memory import physical_memory

@@ -152,19 +152,20 @@ def _groups(mesh: Any, solid: bool) -> Groups:
 
 def _read_mesh(file: Path) -> Any:
     """The mesh of a file. Raises ValueError in one line: meshio itself prints several and leaves the process."""
+    if not file.is_file():
+        raise ValueError(f"there is no mesh file {file}")
     import meshio
-    import trimesh
 
     from grainlaw.mpm_core.output.hdf5_reading import refuse_endless
 
-    if not file.is_file():
-        raise ValueError(f"there is no mesh file {file}")
     said = io.StringIO()
     try:
         for part in _hdf5_files(file):
             refuse_endless(part)
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), _entities_without_group():
             if file.suffix.lower() in SURFACE_FORMATS:
+                import trimesh
+
                 surface = trimesh.load_mesh(file, process=False)
                 return meshio.Mesh(surface.vertices, [("triangle", surface.faces)])
             return meshio.read(file)
