@@ -59,6 +59,17 @@ def test_walls_have_a_velocity_along_themselves():
     assert Scene.from_dict(tomllib.loads(cube.to_toml())).wall_velocity("back") == (1.0, 0.0, -0.5)
 
 
+def test_obstacles_turn_about_a_vector_in_3d():
+    drum = {"name": "drum", "friction": 0.3, "angular_velocity": [0, 1, 0.0],
+            "shape": {"kind": "sphere", "center": [0.1, 0.1, 0.5], "radius": 0.05}}  # fmt: skip
+    scene = Scene.from_dict(CUBE | {"obstacle": [drum]})
+    again = Scene.from_dict(tomllib.loads(scene.to_toml()))
+    assert again.obstacle[0].angular_velocity == (0.0, 1.0, 0.0)
+    for spin in (float("nan"), [0.0, 1.0], [0.0, float("inf"), 0.0], "fast", True):
+        with pytest.raises(InputError, match=r"obstacle\.0\.angular_velocity: .* is no angular velocity; allowed"):
+            Scene.from_dict(CUBE | {"obstacle": [drum | {"angular_velocity": spin}]})
+
+
 OTHER = CUBE["body"][0] | {"shape": {"kind": "sphere", "center": [0.3, 0.2, 0.1], "radius": 0.1}}
 
 IN_3D = {

@@ -1,21 +1,11 @@
 """The sides of the domain: walls, and sides that are joined to their opposites."""
 
-import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
-from grainlaw.mpm_core.scene.section import LARGEST_SPEED, Section, refuse_beyond
+from grainlaw.mpm_core.scene.section import LARGEST_SPEED, Section, number_or_three
 from grainlaw.mpm_core.space import Space
-
-
-def _number_or_vector(value: Any) -> float | tuple[float, ...]:
-    entries = list(value) if isinstance(value, list | tuple) else [value]
-    are_numbers = all(type(entry) in (int, float) and math.isfinite(entry) for entry in entries)
-    if not are_numbers or (isinstance(value, list | tuple) and len(entries) != 3):
-        raise ValueError(f"{value!r:.60} is no velocity; allowed: a number, in 3D three numbers")
-    refuse_beyond(entries, LARGEST_SPEED, "m/s")
-    return tuple(map(float, entries)) if isinstance(value, list | tuple) else float(value)
 
 
 class WallSection(Section):
@@ -25,7 +15,7 @@ class WallSection(Section):
         description="free_slip and no_slip hold the material at the wall; friction lets it leave and slide"
     )
     coefficient: float = Field(default=0.0, ge=0, description="Coulomb friction coefficient of a friction wall [1]")
-    velocity: Annotated[float | tuple[float, float, float], BeforeValidator(_number_or_vector)] = Field(
+    velocity: Annotated[float | tuple[float, float, float], number_or_three("velocity", LARGEST_SPEED, "m/s")] = Field(
         default=0.0,
         description="at which a friction or no_slip wall slides along itself: a number, towards +x or +y; in 3D three "
         "components, the one across the wall zero [m/s]",

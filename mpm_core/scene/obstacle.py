@@ -5,24 +5,25 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, PlainValidator, model_validator
+from pydantic import Field, model_validator
 
 from grainlaw.mpm_core.scene.obstacle_shapes import OBSTACLE_SHAPES, AnyObstacleShape, Plane
-from grainlaw.mpm_core.scene.section import LARGEST_DENSITY, LARGEST_SPEED, Section, Vector, refuse_beyond
+from grainlaw.mpm_core.scene.section import (
+    LARGEST_DENSITY,
+    LARGEST_SPEED,
+    Section,
+    Vector,
+    number_or_three,
+    refuse_beyond,
+)
 from grainlaw.mpm_core.space import Space
 
 LARGEST_SPIN = 1e6  # 1/s
 
 
-def _number_or_vector(value: Any) -> float | tuple[float, ...]:
-    entries = list(value) if isinstance(value, list | tuple) else [value]
-    if not all(type(entry) in (int, float) for entry in entries) or (value is not entries[0] and len(entries) != 3):
-        raise ValueError(f"{value!r:.60} is no angular velocity; allowed: a number, in 3D three numbers")
-    refuse_beyond(entries, LARGEST_SPIN, "1/s")
-    return tuple(map(float, entries)) if isinstance(value, list | tuple) else float(value)
-
-
-AngularVelocity = Annotated[float | tuple[float, float, float], PlainValidator(_number_or_vector)]
+AngularVelocity = Annotated[
+    float | tuple[float, float, float], number_or_three("angular velocity", LARGEST_SPIN, "1/s")
+]
 
 
 class MotionSection(Section):

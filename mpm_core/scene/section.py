@@ -1,9 +1,10 @@
 """What the tables of a scene file are made of."""
 
+import math
 from collections.abc import Iterable
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 # Beyond these a number is a slip of the unit, or overflows on its way through a run.
 LARGEST_SPEED, LARGEST_GRAVITY, LARGEST_DENSITY = 1e6, 1e6, 1e6  # m/s, m/s2, kg/m3
@@ -25,3 +26,17 @@ def refuse_beyond(vector: Iterable[float], largest: float, unit: str) -> None:
     for component in vector:
         if abs(component) > largest:
             raise ValueError(f"{component:g} {unit} is out of bounds; allowed: {-largest:g} to {largest:g} {unit}")
+
+
+def number_or_three(what: str, largest: float, unit: str) -> BeforeValidator:
+    """Takes a number, or three in 3D, up to `largest`; refuses all else in one line, which calls it `what`."""
+
+    def checked(value: Any) -> float | tuple[float, ...]:
+        entries = list(value) if isinstance(value, list | tuple) else [value]
+        are_numbers = all(type(entry) in (int, float) and math.isfinite(entry) for entry in entries)
+        if not are_numbers or (isinstance(value, list | tuple) and len(entries) != 3):
+            raise ValueError(f"{value!r:.60} is no {what}; allowed: a number, in 3D three numbers")
+        refuse_beyond(entries, largest, unit)
+        return tuple(map(float, entries)) if isinstance(value, list | tuple) else float(value)
+
+    return BeforeValidator(checked)
