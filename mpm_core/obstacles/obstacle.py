@@ -38,6 +38,10 @@ class Forces:
     moment: Floats
     duration: float = 0.0
 
+    def reset(self) -> None:
+        """Begin again."""
+        self.impulse, self.moment, self.duration = np.zeros(3), np.zeros(3), 0.0
+
     def means(self) -> tuple[Floats, Floats]:
         """Mean force [N] and torque [N m] about the obstacle's position, both of three components."""
         over = self.duration if self.duration > 0.0 else 1.0
