@@ -62,7 +62,12 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "collapses.invariances.turned_scene",
     ),
     # Obstacles and what flows past them.
-    "obstacles": ("obstacles.turned_plane", "obstacles.earth_pressure", "obstacles.hopper_discharge"),
+    "obstacles": (
+        "obstacles.turned_plane",
+        "obstacles.oblique_plane",
+        "obstacles.earth_pressure",
+        "obstacles.hopper_discharge",
+    ),
     # What accuracy costs.
     "speed": ("speed.sleeping", "speed.speed_error"),
 }
