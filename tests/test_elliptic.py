@@ -104,6 +104,25 @@ def test_eight_times_as_many_cells_along_an_axis_take_few_more_iterations():
     assert iterations(160) < 2.0 * iterations(20)
 
 
+@pytest.mark.parametrize("cells", [(13, 22), (26, 15), (21, 11), (7, 6, 9)], ids=str)
+def test_mirror_images_and_turned_problems_have_mirrored_and_turned_solutions_however_loose_the_tolerance(cells):
+    shape = tuple(n + 2 for n in cells)
+    random = np.random.default_rng(2)
+    is_unknown = np.zeros(shape, bool)
+    is_unknown[(slice(1, -1),) * len(cells)] = random.random(cells) < 0.9
+    source = random.normal(size=shape)
+
+    def solved(unknown, right):
+        return solve(np.zeros(right.shape), faces(right.shape), unknown, right, (), 1e-2).psi
+
+    expected = solved(is_unknown, source)
+    tight = {"rtol": 0.0, "atol": 1e-12 * np.abs(expected).max()}
+    for axis in range(len(cells)):
+        mirrored = solved(np.flip(is_unknown, axis), np.flip(source, axis))
+        np.testing.assert_allclose(np.flip(mirrored, axis), expected, **tight)
+    np.testing.assert_allclose(solved(is_unknown.T, source.T).T, expected, **tight)
+
+
 def test_what_does_not_converge_is_said(monkeypatch):
     shape = (8, 8)
     closed = faces(shape, (), ((0, 0), (0, 1), (1, 0), (1, 1)))

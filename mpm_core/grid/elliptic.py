@@ -116,16 +116,29 @@ def _shapes(finest: tuple[int, ...]) -> list[tuple[int, ...]]:
     """Cells along each axis of all levels, with one layer of padding around them."""
     shapes = [finest]
     while math.prod(shapes[-1]) > FEWEST_CELLS and max(shapes[-1]) > 3:
-        shapes.append(tuple((cells - 1) // 2 + 2 for cells in shapes[-1]))
+        shapes.append(tuple(int(_joined_along(cells)[-1]) + 1 for cells in shapes[-1]))
     return shapes
+
+
+def _joined_along(cells: int) -> NDArray[np.int32]:
+    """The number of the coarser cell that each cell along an axis is part of, padding included.
+
+    Two by two from both ends; of an odd number of cells the one in the middle is alone, or three are joined there. A
+    mirror image is thus joined in mirror image, and solved like what it mirrors.
+    """
+    inner = cells - 2
+    from_end = np.arange(inner, dtype=np.int32) // 2
+    coarser = inner // 2 + (1 if inner % 4 == 1 else 0)
+    from_below = np.arange(inner) < (inner + 1) // 2
+    joined = np.where(from_below, from_end, coarser - 1 - from_end[::-1])
+    return np.concatenate([[0], joined + 1, [coarser + 1]]).astype(np.int32)
 
 
 def _parents(shape: tuple[int, ...], coarser_shape: tuple[int, ...]) -> NDArray[np.int32]:
     parents = np.zeros((1,) * len(shape), np.int32)
     for axis, (cells, coarser_cells) in enumerate(zip(shape, coarser_shape, strict=True)):
-        along = (np.arange(cells, dtype=np.int32) + 1) // 2
-        along[-1] = coarser_cells - 1
-        parents = parents * coarser_cells + along.reshape([-1 if k == axis else 1 for k in range(len(shape))])
+        along = _joined_along(cells).reshape([-1 if k == axis else 1 for k in range(len(shape))])
+        parents = parents * coarser_cells + along
     return parents.ravel()
 
 
