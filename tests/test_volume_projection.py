@@ -5,7 +5,7 @@ import pytest
 from scenes_for_tests import BLOCK, COLUMN, MU_I_LC, changed, simulation
 
 from grainlaw.mpm_core.grid import volume_projection
-from grainlaw.mpm_core.grid.cell_volumes import cell_volumes
+from grainlaw.mpm_core.grid.cell_volumes import SURFACE_CELLS, CellVolumes, CellWindow, WallGap, cell_volumes
 from grainlaw.mpm_core.grid.volume_projection import LONGEST_WAY, project_volumes
 from grainlaw.mpm_core.output.observables import interior_overfill
 
@@ -77,6 +77,19 @@ def test_what_is_short_inside_is_drawn_together_and_nothing_is_filled_up_at_a_fr
     # Without the two cells below the surface, which may stay as they are.
     sunk = top - body.positions[1].max()
     assert 0.8 * 0.04 < sunk < 1.2 * 0.04
+
+
+@pytest.mark.parametrize("is_lower", [True, False])
+def test_air_before_a_wall_takes_out_the_cells_above_it_and_no_others_whatever_axis_the_wall_lies_across(is_lower):
+    full = np.pad(np.ones((10, 7)), 1)
+    is_open = np.arange(10) // 3 == 1
+    near = slice(1, 1 + SURFACE_CELLS) if is_lower else slice(-1 - SURFACE_CELLS, -1)
+    expected = full > 0.0
+    expected[4:7, near] = False
+    for axis, fill, interior in ((1, full, expected), (0, full.T, expected.T)):
+        window = CellWindow((-1, -1), fill.shape, ((True, True), (True, True)), ())
+        found = CellVolumes(window, fill, np.zeros_like(fill), [WallGap(axis, is_lower, is_open)])
+        np.testing.assert_array_equal(found.is_interior(), interior)
 
 
 def test_what_is_too_much_swells_through_a_free_surface():

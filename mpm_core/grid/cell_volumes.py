@@ -108,23 +108,20 @@ class CellVolumes(NamedTuple):
         for axis in range(axes):
             widths = [(SURFACE_CELLS, SURFACE_CELLS) if k == axis else (0, 0) for k in range(axes)]
             continued = np.pad(inside, widths, mode="wrap" if axis in self.window.periodic else "edge")
-            self._open_gaps(continued, axis)
             inside = np.asarray(sliding_window_view(continued, 2 * SURFACE_CELLS + 1, axis=axis).all(axis=-1))
+        for gap in self.gaps:
+            self._open(gap, inside)
         return np.pad(inside, 1) & self.is_material
 
-    def _open_gaps(self, continued: NDArray[np.bool_], axis: int) -> None:
-        """Put air beyond the walls across an axis that material is off; the axes before it have their final cells."""
-        layers = np.moveaxis(continued, axis, 0)
-        along = [other for other in range(continued.ndim) if other != axis]
-        cells = tuple(
-            slice(self.window.first[other] + 1, self.window.first[other] + self.window.shape[other] - 1)
-            for other in along
-        )
-        for gap in self.gaps:
-            end = 0 if gap.is_lower else 1
-            if gap.axis == axis and self.window.at_walls[axis][end]:
-                beyond = layers[:SURFACE_CELLS] if gap.is_lower else layers[-SURFACE_CELLS:]
-                beyond[:, gap.is_open[cells]] = False
+    def _open(self, gap: WallGap, inside: NDArray[np.bool_]) -> None:
+        """Take out the cells that have the air of a gap before them, if its wall bounds the window."""
+        if not self.window.at_walls[gap.axis][0 if gap.is_lower else 1]:
+            return
+        layers = np.moveaxis(inside, gap.axis, 0)
+        near = layers[:SURFACE_CELLS] if gap.is_lower else layers[-SURFACE_CELLS:]
+        firsts = [first + 1 for axis, first in enumerate(self.window.first) if axis != gap.axis]
+        cells = tuple(slice(first, first + count) for first, count in zip(firsts, layers.shape[1:], strict=True))
+        near[:, gap.is_open[cells]] = False
 
 
 def find_window(bodies: Sequence[Body], grid: Grid, periodic_axes: Sequence[int]) -> CellWindow:
