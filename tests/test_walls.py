@@ -91,7 +91,7 @@ def test_a_layer_that_falls_across_periodic_sides_stays_flat():
     assert rows[0, 0] < 0.03
 
 
-@pytest.mark.parametrize("cells", [4, 5])
+@pytest.mark.parametrize("cells", [2, 4, 5])
 def test_all_copies_of_a_node_across_periodic_sides_are_the_same(cells):
     """A grid that is periodic over four cells has three copies of a node."""
     layer = {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [0.1 * cells, 0.3]}

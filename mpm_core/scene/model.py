@@ -27,8 +27,8 @@ from grainlaw.mpm_core.scene.shapes import lattice, refused_mesh
 from grainlaw.mpm_core.scene.space_rules import fitted_to_space
 from grainlaw.mpm_core.space import SPACES, Space
 
-# The widest stencil: over fewer cells it would reach the same node twice.
-FEWEST_PERIODIC_CELLS = 4
+# A stencil then reaches nodes twice, as their own images; over a single one it would be nothing but images.
+FEWEST_PERIODIC_CELLS = 2
 
 
 class GridSection(Section):
