@@ -111,12 +111,16 @@ SURFACES = "# grain_diameter = 0.003\nt,x,h\n" + "".join(
     f"{t},{x},{max(0.0, 0.2 - abs(x) / (1 + t))}\n" for t in (0.0, 0.5) for x in (-0.3, -0.1, 0.0, 0.1, 0.3)
 )
 
+SURFACES_AROUND = "# grain_diameter = 0.003\n# space = axisymmetric\nt,x,h\n" + "".join(
+    f"{t},{x},{max(0.0, 0.2 - x / (1 + t))}\n" for t in (0.0, 0.5) for x in (0.0, 0.1, 0.3)
+)
 
-def _dumps(form: str, spoils: str) -> Callable[[Path], Path]:
+
+def _dumps(form: str, spoils: str, **more: Any) -> Callable[[Path], Path]:
     """A run of a few grains in a format, of which `run.json` or the first dump is to be spoilt."""
 
     def write(folder: Path) -> Path:
-        description: dict[str, Any] = {"depth": 0.06, "grain_density": 2450.0, "time_step": 1e-4}
+        description: dict[str, Any] = {"depth": 0.06, "grain_density": 2450.0, "time_step": 1e-4, **more}
         files = [WRITERS[form](folder, number, block(0.03, 0.03)) for number in range(2)]
         frames = [{"file": file, "time": 0.1 * number} for number, file in enumerate(files)]
         (folder / "run.json").write_text(json.dumps({**description, "frames": frames}))
@@ -338,6 +342,8 @@ def subjects() -> dict[str, Subject]:
     """All kinds of input."""
     laws = ("mu_i_lc", "modified_cam_clay", "mu_i_mcc", "mu_i_phi_i", "newtonian", "neo_hookean", "drucker_prager")
     dumps = {f"{form} {spoils or 'dump'}": _dumps(form, spoils) for form in WRITERS for spoils in ("", "run.json")}
+    around = {"space": "axisymmetric", "solid_fraction": 0.6, "axis": [0.0, 0.03]}
+    dumps |= {f"around {spoils or 'dump'}": _dumps("csv", spoils, **around) for spoils in ("", "run.json")}
     meshes = {
         "msh 2.2": _mesh("body.msh", file_format="gmsh22", binary=False),
         "msh 2.2 binary": _mesh("body.msh", file_format="gmsh22", binary=True),
@@ -359,7 +365,9 @@ def subjects() -> dict[str, Subject]:
             lambda path: read_data(path, clay),
         ),
         "control": Subject({"control": _text("control.toml", CONTROL)}, lambda path: read_control(path).steps),
-        "surface": Subject({"surface": _text("surface.csv", SURFACES)}, load_reference),
+        "surface": Subject(
+            {"surface": _text("surface.csv", SURFACES), "around": _text("surface.csv", SURFACES_AROUND)}, load_reference
+        ),
         "dump": Subject(dumps, lambda path: observe_folder(path.parent)),
         "observation": Subject({"hdf5": _observation}, load_reference),
         "mesh": Subject(meshes, read_mesh),

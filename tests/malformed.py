@@ -22,7 +22,7 @@ from spoiling import spoil
 from grainlaw.materials import InputError, SimulationError
 from grainlaw.materials.errors import InputWarning
 
-LONGEST = 10.0  # s, to refuse or to read an input
+LONGEST = 10.0  # s of processor time, to refuse or to read an input
 LONGEST_LINE = 1000
 FAULTS = ("fault", "not one line")
 
@@ -52,18 +52,18 @@ def attempt(read: Callable[[Path], object], path: Path) -> Trial:
 
 @contextmanager
 def time_limit() -> Iterator[None]:
-    """Raise TimeoutError in the block after `LONGEST` seconds."""
+    """Raise TimeoutError in the block after `LONGEST` seconds of this process, however busy the machine is."""
 
     def end(*_: object) -> None:
         raise TimeoutError(f"longer than {LONGEST:g} s")
 
-    before = signal.signal(signal.SIGALRM, end)
-    signal.setitimer(signal.ITIMER_REAL, LONGEST)
+    before = signal.signal(signal.SIGPROF, end)
+    signal.setitimer(signal.ITIMER_PROF, LONGEST)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
 
 
 def trials(count: int, seed: int, folder: Path) -> Iterator[tuple[str, Path, Trial]]:

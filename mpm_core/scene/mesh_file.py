@@ -182,9 +182,9 @@ def _read_mesh(file: Path) -> Any:
 
 def _hdf5_files(file: Path) -> Iterator[Path]:
     """The files in HDF5 that meshio opens for a mesh: itself, or those that an XDMF file names."""
-    if file.suffix in HDF5_SUFFIXES:
+    if file.suffix.lower() in HDF5_SUFFIXES:
         yield file
-    elif file.suffix in (".xdmf", ".xmf"):
+    elif file.suffix.lower() in (".xdmf", ".xmf"):
         for name in set(re.findall(r">\s*([^<>:]+?):/", file.read_text(errors="replace"))):
             if (file.parent / name).is_file():
                 yield file.parent / name
