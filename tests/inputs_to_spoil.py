@@ -313,6 +313,46 @@ ROUND = changed(
         "body.0.initial_stress": {"kind": "geostatic", "horizontal_ratio": 0.5},
     },
 )
+MOVED = changed(
+    BLOCK,
+    {
+        "obstacle": [
+            {
+                "name": "ground",
+                "friction": 0.3,
+                "shape": {"kind": "terrain", "points": [[0.0, 0.05], [0.5, 0.1], [1.0, 0.05]]},
+            },
+            {
+                "name": "slope",
+                "friction": 0.0,
+                "shape": {"kind": "plane", "point": [0.05, 0.0], "normal": [1.0, 0.5]},
+                "until": 0.05,
+            },
+            {
+                "name": "blade",
+                "friction": 0.3,
+                "shape": {"kind": "line", "points": [[0.8, 0.2], [0.8, 0.4]], "thickness": 0.02},
+                "motion": {"time": [0.0, 0.1], "displacement": [[0.0, 0.0], [0.1, 0.0]], "angle": [0.0, 0.5]},
+            },
+            {
+                "name": "ball",
+                "friction": 0.3,
+                "shape": {"kind": "disc", "center": [0.5, 0.7], "radius": 0.05},
+                "free": {"density": 2000.0, "velocity": [0.0, -1.0], "angular_velocity": 1.0},
+            },
+        ],
+    },
+)
+MOTION = "t,x,y,angle\n0,0,0,0\n0.1,0.1,0,0.5\n0.2,0.1,0.1,0.5\n"
+
+
+def read_motion(path: Path) -> object:
+    """As that of an obstacle."""
+    scene = path.parent / "scene.toml"
+    scene.write_text(tomli_w.dumps(changed(MOVED, {"obstacle.2.motion": {"file": path.name}})))
+    return set_up(scene)
+
+
 TETRAHEDRON = np.array([[0.3, 0.2, 0.1], [0.7, 0.2, 0.1], [0.3, 0.6, 0.1], [0.3, 0.2, 0.5]])
 
 
@@ -358,6 +398,8 @@ def subjects() -> dict[str, Subject]:
     return {
         "scene": Subject({"many": _scene(MANY), "two": _scene(TWO), "column": _scene(COLUMN)}, set_up),
         "scene in space": Subject({"solids": _scene(SOLIDS), "round": _scene(ROUND)}, set_up),
+        "obstacles": Subject({"moved": _scene(MOVED)}, set_up),
+        "motion": Subject({"motion": _text("motion.csv", MOTION)}, read_motion),
         "solid": Subject({name: _solid(name) for name in ("a.stl", "a.ply", "a.obj", "a.off", "a.vtk")}, read_solid),
         "parameters": Subject({law: _parameters(law) for law in laws}, read_parameters),
         "data": Subject(

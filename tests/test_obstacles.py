@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 import trimesh
-from scenes_for_tests import ELASTIC, MU_I_LC, changed, simulation
+from scenes_for_tests import ELASTIC, MU_I_LC, changed, simulation, write_scene
 
 from grainlaw.materials import InputError
 from grainlaw.materials.errors import InputWarning
@@ -319,3 +319,11 @@ def test_what_sleeps_wakes_before_an_obstacle_that_moves_and_not_before_one_that
     assert awake[3] > 50
     depth = sinking.bodies[0].positions[:, np.abs(sinking.bodies[0].positions[0] - 0.25) < 0.02][1].max()
     assert depth < 0.28
+
+
+def test_a_motion_file_counts_from_the_scene_file(tmp_path):
+    (tmp_path / "motion.csv").write_text("t,x,y,angle\n0,0,0,0\n0.1,0.2,0,0.5\n")
+    content = changed(BOX, {"obstacle.0.motion": {"file": "motion.csv"}})
+    scene = Scene.load(write_scene(tmp_path / "scene.toml", content))
+    assert scene.obstacle[0].motion.displacement == [(0.0, 0.0), (0.2, 0.0)]
+    assert scene.obstacle[0].motion.angle == [0.0, 0.5]

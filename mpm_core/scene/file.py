@@ -25,9 +25,10 @@ def read_content(path: Path, overrides: Mapping[str, Any]) -> dict[str, Any]:
     materials = content.get("material")
     for table in materials.values() if isinstance(materials, dict) else ():
         _take_in_parameter_file(table, path)
-    bodies = content.get("body")
-    for body in bodies if isinstance(bodies, list) else ():
-        _resolve_mesh_path(body, path.parent)
+    for key, table in (("body", "shape"), ("obstacle", "shape"), ("obstacle", "motion")):
+        entries = content.get(key)
+        for entry in entries if isinstance(entries, list) else ():
+            _resolve_file(entry.get(table) if isinstance(entry, dict) else None, path.parent)
     return content
 
 
@@ -72,8 +73,7 @@ def _entry(entries: list[Any], key: str, name: str) -> int:
     return int(name)
 
 
-def _resolve_mesh_path(body: Any, folder: Path) -> None:
-    shape = body.get("shape") if isinstance(body, dict) else None
-    if isinstance(shape, dict) and shape.get("kind") == "mesh" and "file" in shape:
+def _resolve_file(table: Any, folder: Path) -> None:
+    if isinstance(table, dict) and isinstance(table.get("file"), str):
         # Absolute, so that the copy of the scene in the run's folder finds it too.
-        shape["file"] = str((folder / str(shape["file"])).absolute())
+        table["file"] = str((folder / table["file"]).absolute())

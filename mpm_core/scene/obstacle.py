@@ -29,7 +29,9 @@ AngularVelocity = Annotated[
 class MotionSection(Section):
     """A motion as a table, or a CSV file with the columns t, x, y (and z in 3D) and, where it turns, angle."""
 
-    file: Path | None = Field(default=None, strict=False, description="CSV file; a relative path counts from here")
+    file: Path | None = Field(
+        default=None, strict=False, description="CSV file; a relative path counts from the scene file"
+    )
     time: list[float] | None = Field(default=None, min_length=2, description="increasing times from 0 on [s]")
     displacement: list[Vector] | None = Field(
         default=None, min_length=2, description="from the start, at each time [m]"
