@@ -156,12 +156,12 @@ def _read_mesh(file: Path) -> Any:
         raise ValueError(f"there is no mesh file {file}")
     import meshio
 
-    from grainlaw.mpm_core.output.hdf5_reading import refuse_endless
+    from grainlaw.mpm_core.output.damaged_files import refuse_fatal
 
     said = io.StringIO()
     try:
         for part in _hdf5_files(file):
-            refuse_endless(part)
+            refuse_fatal(part, "HDF5")
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), _entities_without_group():
             if file.suffix.lower() in SURFACE_FORMATS:
                 import trimesh

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from grainlaw.materials import InputError
+from grainlaw.mpm_core.output.damaged_files import refuse_fatal
 from grainlaw.validation.grains.readers.columns import VECTORS, settled
 from grainlaw.validation.grains.readers.raw_frame import RawFrame
 from grainlaw.validation.grains.readers.text_file import is_packed
@@ -65,6 +66,7 @@ def _read(path: Path) -> Any:
     if is_packed(path):
         raise InputError(f"{path} is packed by gzip, which VTK does not read; unpack it first")
     _refuse_strange_counts(path)
+    refuse_fatal(path, "VTK")
     try:
         with pyvista.vtk_verbosity("off"):
             data = pyvista.read(path)

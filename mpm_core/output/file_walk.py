@@ -1,9 +1,8 @@
-"""A process of its own that goes through HDF5 files, so that nobody else hangs or dies of a damaged one.
+"""A process of its own that goes through files, so that nobody else hangs or dies of a damaged one.
 
-A line of JSON asks for a file: its path and the processor time that each of its parts may take [s]; the answer is an
-empty line. A part that takes longer, or on which the library crashes, ends the process without an answer. Everything
-is touched that a reader may touch but the numbers of datasets: groups, links, attributes, the index of the chunks.
-What can be read of it is not judged here.
+A line of JSON asks for a file: its kind, its path and the processor time that each of its parts may take [s]; the
+answer is an empty line. A part that takes longer, or on which the library crashes, ends the process without an answer.
+What can be read of a file is not judged here.
 """
 
 import json
@@ -17,12 +16,28 @@ from typing import Any
 
 import h5py
 
-# Whatever the library or the conversion of a value raises has come to an end.
+# Whatever a library or the conversion of a value raises has come to an end.
 FINITE = Exception
 
 
-def walk(group: h5py.Group, seen: set[tuple[int, int]], seconds: float) -> None:
-    """Touch all that lies in a group, but nothing twice, whatever links lead to it."""
+def walk_hdf5(path: str, seconds: float) -> None:
+    """Touch all that a reader may touch, but the numbers of datasets: groups, links, attributes, indices of chunks."""
+    limit_processor_time(seconds)
+    with h5py.File(path) as file:
+        _walk_group(file, set(), seconds)
+
+
+def walk_vtk(path: str, seconds: float) -> None:
+    """Read the file."""
+    import pyvista
+
+    limit_processor_time(seconds)
+    with pyvista.vtk_verbosity("off"):
+        pyvista.read(path)
+
+
+def _walk_group(group: h5py.Group, seen: set[tuple[int, int]], seconds: float) -> None:
+    """Go through a group, but through nothing twice, whatever links lead to it."""
     _touch_attributes(group)
     for name in _names(group):
         limit_processor_time(seconds)
@@ -33,7 +48,7 @@ def walk(group: h5py.Group, seen: set[tuple[int, int]], seconds: float) -> None:
                 continue
             seen.add((place.fileno, place.addr))
             if isinstance(found, h5py.Group):
-                walk(found, seen, seconds)
+                _walk_group(found, seen, seconds)
             else:
                 _touch_attributes(found)
                 if isinstance(found, h5py.Dataset) and found.chunks is not None:
@@ -61,12 +76,14 @@ def limit_processor_time(seconds: float) -> None:
 def main() -> None:
     """Answer until nobody asks any more."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    walks = {"HDF5": walk_hdf5, "VTK": walk_vtk}
+    # Libraries print what they think of a file; the answer is the only thing that goes out.
+    answers, sys.stdout = sys.stdout, sys.stderr
     for line in sys.stdin:
-        path, seconds = json.loads(line)
-        limit_processor_time(seconds)
-        with suppress(FINITE), h5py.File(path) as file:
-            walk(file, set(), seconds)
-        print(flush=True)
+        kind, path, seconds = json.loads(line)
+        with suppress(FINITE):
+            walks[kind](path, seconds)
+        print(file=answers, flush=True)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,10 @@
-"""HDF5 files that were damaged: one line within seconds, where the library would go round for ever or believe them."""
+"""Damaged HDF5 and VTK files: one line within seconds, where a library would go on for ever, crash or believe them."""
 
+import base64
+import json
 import os
 import signal
+import struct
 
 import h5py
 import numpy as np
@@ -10,7 +13,7 @@ from scenes_for_tests import BLOCK, changed, write_scene
 
 from grainlaw.materials import InputError
 from grainlaw.mpm_core import Scene, run
-from grainlaw.mpm_core.output import hdf5_reading
+from grainlaw.mpm_core.output import damaged_files
 from grainlaw.mpm_core.output.hdf5_file import USER_BLOCK, is_sealed
 from grainlaw.mpm_core.output.hdf5_reading import existing_hdf5, numbers_of
 from grainlaw.mpm_core.output.vtkhdf import drop_after
@@ -20,7 +23,7 @@ from grainlaw.validation.grains.reference_file import load_reference
 
 @pytest.fixture(autouse=True)
 def _soon(monkeypatch):
-    monkeypatch.setattr(hdf5_reading, "LONGEST_STEP", 0.5)
+    monkeypatch.setattr(damaged_files, "LONGEST_STEP", 0.5)
 
 
 def write_endless(path, group="/"):
@@ -61,6 +64,23 @@ def test_a_mesh_without_end_is_refused(tmp_path, name):
         Scene.load(write_scene(tmp_path / "scene.toml", scene))
 
 
+VTK_OF_ONE_ENDLESS_BLOCK = """<?xml version="1.0"?>
+<VTKFile type="PolyData" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">
+<PolyData><Piece NumberOfPoints="1" NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">
+<PointData><DataArray type="Float64" Name="radius" format="binary">{}AAAA</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0</DataArray></Points>
+</Piece></PolyData></VTKFile>"""
+
+
+def test_a_vtk_file_of_which_the_library_dies_is_refused(tmp_path):
+    header = base64.b64encode(struct.pack("<4Q", 1, 2**61, 2**61, 8)).decode()
+    (tmp_path / "grains0.vtp").write_text(VTK_OF_ONE_ENDLESS_BLOCK.format(header))
+    frames = [{"file": "grains0.vtp", "time": 0.0}]
+    (tmp_path / "run.json").write_text(json.dumps({"depth": 0.06, "grain_density": 2450.0, "frames": frames}))
+    with pytest.raises(InputError, match=r"grains0\.vtp is damaged: VTK crashes on it \(SIGABRT\)"):
+        load_reference(tmp_path)
+
+
 def test_a_file_after_one_without_end_is_read(tmp_path):
     write_endless(tmp_path / "bad.h5")
     with h5py.File(tmp_path / "good.h5", "w") as file:
@@ -73,8 +93,8 @@ def test_a_file_after_one_without_end_is_read(tmp_path):
         with existing_hdf5(tmp_path / "good.h5") as file:
             assert numbers_of(file["x"]) == [1.0]
         # Whoever ends the process that goes through files.
-        os.kill(hdf5_reading._walker._process.pid, signal.SIGKILL)
-        hdf5_reading._walker._process.wait()
+        os.kill(damaged_files._walker._process.pid, signal.SIGKILL)
+        damaged_files._walker._process.wait()
 
 
 def test_what_a_file_cannot_hold_is_refused(tmp_path):
