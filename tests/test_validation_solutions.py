@@ -11,6 +11,7 @@ from grainlaw.validation.cases.exact.generalised_vortex import history, largest
 from grainlaw.validation.cases.exact.rigid_rotation import START, turned_stress
 from grainlaw.validation.cases.exact.sliding_block import exact_distance
 from grainlaw.validation.cases.point.cam_clay_solutions import EXAMPLE
+from grainlaw.validation.cases.spaces import driven_cylinder, turned_block
 
 
 def test_golden_states_of_the_worked_example():
@@ -59,3 +60,34 @@ def test_the_vortex_follows_its_exact_motion_with_the_body_force_of_the_right_si
     assert errors[1] < 0.08
     assert errors[0] > 2.0 * errors[1]
     assert largest(history(6, shear_sign=-1.0)) > 0.5
+
+
+def test_force_on_the_driven_cylinder_balances_its_stress_and_inertia():
+    """By differences of the first Piola-Kirchhoff stress of the deformation, and of the displacement in time."""
+    place, time, step = np.array([[0.3], [0.7]]), 3e-3, 1e-5
+
+    def piola(places):
+        f = driven_cylinder.stretches(places, time)
+        logarithm = np.log(f.radial * f.around * f.up)
+        return [
+            driven_cylinder.SHEAR_MODULUS * (stretch - 1.0 / stretch) + driven_cylinder.LAME * logarithm / stretch
+            for stretch in f
+        ]
+
+    def slope(axis, component):
+        way = np.zeros((2, 1))
+        way[axis] = step
+        return (piola(place + way)[component] - piola(place - way)[component]) / (2.0 * step)
+
+    moments = [driven_cylinder.displacement(place, time + shift) for shift in (-step, 0.0, step)]
+    inertia = (moments[0] - 2.0 * moments[1] + moments[2]) / step**2
+    radial, around, _ = piola(place)
+    divergence = np.array([slope(0, 0) + (radial - around) / place[0], slope(1, 2)])
+    expected = inertia - divergence / driven_cylinder.DENSITY
+    assert driven_cylinder.body_force(place, time) == pytest.approx(expected, rel=1e-3)
+
+
+def test_gradient_of_a_turning_block_is_that_of_its_rotation():
+    turning, step = turned_block.Turning(precession=0.7), 1e-5
+    change = (turning.rotation(0.4 + step) - turning.rotation(0.4 - step)) / (2.0 * step)
+    assert turning.gradient(0.4) == pytest.approx(change @ turning.rotation(0.4).T, abs=1e-9)

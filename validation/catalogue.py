@@ -37,6 +37,13 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "collapses.rest",
         "collapses.invariances.time_step_independence",
     ),
+    # Axisymmetry and three dimensions, and the same problem in several spaces.
+    "spaces": (
+        "spaces.radial_expansion",
+        "spaces.self_weight",
+        "spaces.turned_block",
+        "spaces.driven_cylinder",
+    ),
     # One scene for each granular law.
     "laws": ("collapses.collapse_of_every_law",),
     # What a user may do to it.

@@ -49,6 +49,11 @@ def rectangle(x: float, y: float, width: float, height: float) -> dict[str, Any]
     return {"kind": "rectangle", "lower": [x, y], "upper": [x + width, y + height]}
 
 
+def block(lower: list[float], upper: list[float]) -> dict[str, Any]:
+    """A rectangle, or in three dimensions a box, from its lower to its upper corner [m]."""
+    return {"kind": "box" if len(lower) == 3 else "rectangle", "lower": lower, "upper": upper}
+
+
 def advance(
     simulation: Simulation,
     end: float,

@@ -11,7 +11,8 @@ so that tau = 0 is APIC (Jiang et al. 2015), tau = infinity affine FLIP, and the
 step. The energy of a point's field is m/2 (v^2 + A:A D); for tau = infinity the transfers keep its sum, but for terms
 of the order of dt.
 
-In axisymmetry the material is stretched around the axis besides, by L_zz = v_r^new/r.
+In axisymmetry the material is stretched around the axis besides, by L_zz = v_r^new/r (for r see
+`SMALLEST_RADIUS`).
 
 In some steps the grid also returns to each point pressure and density of the material around it, which couple the
 volumes of points (`volume_coupling`).
@@ -30,7 +31,7 @@ from grainlaw.materials.precision import PRECISIONS
 from grainlaw.mpm_core.grid.grid import NODE_OF
 from grainlaw.mpm_core.kernels.g2p_nodes import make_gather
 from grainlaw.mpm_core.kernels.positions import position_access
-from grainlaw.mpm_core.kernels.shape_functions import Basis
+from grainlaw.mpm_core.kernels.shape_functions import SMALLEST_RADIUS, Basis
 from grainlaw.mpm_core.kernels.simd.arithmetic import (
     filled_like,
     first_lanes,
@@ -207,7 +208,7 @@ def make_advect(space: Space, precision: str) -> Callable[..., Any]:
 
     @register_jitable(forceinline=True)
     @named(f"{space.name}_{precision}_{CORE_MARK}")
-    def advect(rows, first, last, at_once, dt, flip_fraction, velocities, energies, sums):  # type: ignore[no-untyped-def]
+    def advect(rows, first, last, at_once, cell_size, dt, flip_fraction, velocities, energies, sums):  # type: ignore[no-untyped-def]
         vx, vy = rows[vx_row], rows[vy_row]
         for p in range(first, last, at_once):
             new_vx, new_vy, old_vx, old_vy = transposed_at(velocities.means, p - first)
@@ -215,7 +216,7 @@ def make_advect(space: Space, precision: str) -> Callable[..., Any]:
             velocity_y = scaled_sum(flip_fraction, several_at(vy, p) - old_vy, new_vy)
             x, y = position_at(rows, p)
             if hoop:
-                put(rows[hoop_gradient], p, new_vx / rounded(x))
+                put(rows[hoop_gradient], p, new_vx / greater(rounded(x), SMALLEST_RADIUS * cell_size))
             advection_x, advection_y = widened(new_vx), widened(new_vy)
             new_x, new_y = scaled_sum(dt, advection_x, x), scaled_sum(dt, advection_y, y)
             put(vx, p, velocity_x)
@@ -310,7 +311,7 @@ def make_g2p(space: Space, basis: Basis, couples: bool, precision: str) -> Calla
                     if couples:
                         gather_bulk(last - first, nodes, strides[0], stencils, bulk)
                         update_neighbourhood(rows, first, last, at_once, bulk)
-                    sums = advect(rows, first, last, at_once, dt, flip_fraction, velocities, energies, sums)
+                    sums = advect(rows, first, last, at_once, cell_size, dt, flip_fraction, velocities, energies, sums)
                 report(reports, block, point_mass, sums)
                 block = next_chunk(ranges, thread)
 

@@ -6,7 +6,8 @@ brings the velocity field v + A (x - x_p) and the force of its stress,
     m_i += w_i m;  V_i += w_i V;  (V p)_i += w_i V p;
     (m v)_i += w_i m (v + A (x_i - x_p));  f_i -= w_i V sigma (x_i - x_p) / D.
 
-In axisymmetry m and V are per radian, and the stress around the axis pulls inwards besides, f_r,i -= w_i V sigma_zz/r.
+In axisymmetry m and V are per radian, and the stress around the axis pulls inwards besides, f_r,i -= w_i V sigma_zz/r
+(for r see `SMALLEST_RADIUS`).
 
 Momentum and force are linear in the number of the node, `corner + a along_x + b along_y` for the node (a, b) of the
 stencil, so that one addition leads from node to node (`scatter`).
@@ -32,8 +33,8 @@ from grainlaw.materials.tensor import THIRD
 from grainlaw.mpm_core.grid.grid import COMPONENTS
 from grainlaw.mpm_core.kernels.p2g_nodes import make_scatter
 from grainlaw.mpm_core.kernels.positions import position_access
-from grainlaw.mpm_core.kernels.shape_functions import Basis
-from grainlaw.mpm_core.kernels.simd.arithmetic import as_lanes, filled_like, rounding_to, scaled_sum
+from grainlaw.mpm_core.kernels.shape_functions import SMALLEST_RADIUS, Basis
+from grainlaw.mpm_core.kernels.simd.arithmetic import as_lanes, filled_like, greater, rounding_to, scaled_sum
 from grainlaw.mpm_core.kernels.simd.registers import LANES_OF, put, put_transposed, several_at
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.kernels.stencil import GROUP, make_find_stencils
@@ -86,7 +87,8 @@ def make_put_contributions(space: Space, precision: str) -> Callable[..., Any]:
         py = scaled_sum(x, py_x, scaled_sum(y, py_y, mass * several_at(rows[vy], p)))
         fx, fy = scaled_sum(x, fx_x, y * fx_y), scaled_sum(x, fy_x, y * fy_y)
         if hoop:
-            fx = fx - volume * several_at(rows[szz], p) / rounded(position_at(rows, p)[0])
+            radius = greater(rounded(position_at(rows, p)[0]), SMALLEST_RADIUS * cell_size)
+            fx = fx - volume * several_at(rows[szz], p) / radius
         pressure = (xx + yy + several_at(rows[szz], p)) * -THIRD
         bulk = as_lanes(mass, volume), volume, volume * pressure, filled_like(0.0, volume)
         put_transposed(contributions.values, k, (px, py, fx, fy, *bulk))

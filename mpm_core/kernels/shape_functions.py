@@ -24,6 +24,10 @@ from grainlaw.mpm_core.kernels.sources import CORE_MARK
 # Below this value, at a twentieth of a cell from the wall, a point is taken to be that far: no explicit step that is
 # stable elsewhere then fails there. Points are generated farther away than that.
 SMALLEST_MOMENT_AT_WALL = 0.05
+# Towards the axis of axisymmetry the stretch around it has the same growth, as it is over the radius. Below this
+# distance, in cells, a point is taken to be that far: alone there, it holds at the default step. Points are generated
+# farther away.
+SMALLEST_RADIUS = 0.08
 # The moment of hat functions vanishes at every node; the far node has no weight there either.
 SMALLEST_MOMENT_OF_HATS = 1e-12
 

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.space import PLANE_STRAIN, Space
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from grainlaw.validation.scenes import advance, in_order_of_generation, simulation_of
+from grainlaw.validation.scenes import advance, block, in_order_of_generation, simulation_of
 
 BAND, SETTLEMENT_BAND = 5e-3, 1e-3
 HEIGHT, DENSITY, GRAVITY = 1.0, 1500.0, 9.81
@@ -46,18 +47,19 @@ class Observation:
     last: Any = None
 
 
-def scene(law: str, gravity: float) -> dict[str, Any]:
-    """A column of 4 x 40 cells that starts in equilibrium with its weight."""
-    size = HEIGHT / CELLS
+def scene(law: str, gravity: float, space: Space) -> dict[str, Any]:
+    """A column, 4 cells wide and 40 high, that starts in equilibrium with its weight."""
+    size, across = HEIGHT / CELLS, space.axes - 1
     return {
-        "gravity": [0.0, -gravity],
-        "grid": {"cell_size": size, "upper": [4.0 * size, 1.2 * HEIGHT]},
+        "space": space.name,
+        "gravity": [*[0.0] * across, -gravity],
+        "grid": {"cell_size": size, "upper": [*[4.0 * size] * across, 1.2 * HEIGHT]},
         "time": {"end": 10.0},
         "material": {law: LAWS[law]},
         "body": [
             {
                 "material": law,
-                "shape": {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [4.0 * size, HEIGHT]},
+                "shape": block([0.0] * space.axes, [*[4.0 * size] * across, HEIGHT]),
                 "density": DENSITY,
                 "initial_stress": {"kind": "geostatic"},
             }
@@ -65,29 +67,29 @@ def scene(law: str, gravity: float) -> dict[str, Any]:
     }
 
 
-def observed(law: str, duration: float, gravity: float = GRAVITY) -> Observation:
+def observed(law: str, duration: float, gravity: float = GRAVITY, space: Space = PLANE_STRAIN) -> Observation:
     """A column over time: the stress of each point against the weight of what was above it at the start."""
-    simulation = simulation_of(scene(law, gravity))
-    body = simulation.bodies[0]
-    start = in_order_of_generation(body, body.positions[1])
-    result = Observation(depth=HEIGHT - start)
+    simulation = simulation_of(scene(law, gravity, space))
+    body, up = simulation.bodies[0], space.up
+    start = in_order_of_generation(body, body.positions)
+    result = Observation(depth=HEIGHT - start[up])
 
     def observe(present: Simulation) -> None:
-        result.last = in_order_of_generation(body, body.stress[1])
+        result.last = in_order_of_generation(body, body.stress[up])
         errors = np.abs(result.last + DENSITY * GRAVITY * result.depth) / WEIGHT
         result.stress = max(result.stress, float(errors.max()))
-        moved = np.abs(in_order_of_generation(body, body.positions[1]) - start) / HEIGHT
+        moved = np.abs(in_order_of_generation(body, body.positions) - start) / HEIGHT
         result.settlement = max(result.settlement, float(moved.max()))
 
     advance(simulation, duration, observe, intervals=50)
     return result
 
 
-def measurements(law: str, result: Observation) -> tuple[Measurement, ...]:
+def measurements(law: str, result: Observation, label: str = "") -> tuple[Measurement, ...]:
     """The largest errors of one law."""
     return (
-        upper_bound(f"{law}: largest error of sigma_yy", "1", result.stress, BAND),
-        upper_bound(f"{law}: largest displacement", "1", result.settlement, SETTLEMENT_BAND),
+        upper_bound(f"{law}: largest error of the vertical stress{label}", "1", result.stress, BAND),
+        upper_bound(f"{law}: largest displacement{label}", "1", result.settlement, SETTLEMENT_BAND),
     )
 
 

@@ -1,0 +1,1 @@
+"""Cases in axisymmetry and three dimensions, and the same problem in several spaces."""
