@@ -11,7 +11,7 @@ from grainlaw.validation.cases.exact.generalised_vortex import history, largest
 from grainlaw.validation.cases.exact.rigid_rotation import START, turned_stress
 from grainlaw.validation.cases.exact.sliding_block import exact_distance
 from grainlaw.validation.cases.point.cam_clay_solutions import EXAMPLE
-from grainlaw.validation.cases.spaces import driven_cylinder, turned_block
+from grainlaw.validation.cases.spaces import driven_cylinder, pipe_flow, turned_block
 
 
 def test_golden_states_of_the_worked_example():
@@ -60,6 +60,15 @@ def test_the_vortex_follows_its_exact_motion_with_the_body_force_of_the_right_si
     assert errors[1] < 0.08
     assert errors[0] > 2.0 * errors[1]
     assert largest(history(6, shear_sign=-1.0)) > 0.5
+
+
+def test_pipe_flow_starts_from_rest_and_ends_as_a_parabola():
+    radii = np.linspace(0.0, 1.0, 11)
+    largest = pipe_flow.DENSITY * pipe_flow.ACCELERATION / (4.0 * pipe_flow.VISCOSITY)
+    assert pipe_flow.exact_velocity(radii, 1e3) == pytest.approx(largest * (1.0 - radii**2))
+    assert np.abs(pipe_flow.exact_velocity(radii, 0.0)).max() < 1e-2 * largest
+    # of a short time, as of a body in free fall
+    assert pipe_flow.exact_velocity(0.0, 0.05) == pytest.approx(pipe_flow.ACCELERATION * 0.05, rel=1e-3)
 
 
 def test_force_on_the_driven_cylinder_balances_its_stress_and_inertia():

@@ -42,7 +42,9 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "spaces.radial_expansion",
         "spaces.self_weight",
         "spaces.turned_block",
+        "spaces.oblique_slide",
         "spaces.driven_cylinder",
+        "spaces.pipe_flow",
     ),
     # One scene for each granular law.
     "laws": ("collapses.collapse_of_every_law",),
