@@ -19,7 +19,7 @@ from grainlaw.materials import InputError
 WALK = Path(__file__).with_name("file_walk.py")
 # Processor time for one part of a file [s], and per byte of the file, which may be one list of names, chunks or values.
 LONGEST_STEP = 3.0
-LONGEST_STEP_PER_BYTE = {"HDF5": 3e-8, "VTK": 1e-6}
+LONGEST_STEP_PER_BYTE = {"HDF5": 3e-8, "VTK": 3e-7}
 
 
 def refuse_fatal(path: Path, kind: Literal["HDF5", "VTK"]) -> None:
