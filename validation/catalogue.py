@@ -44,6 +44,7 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "spaces.turned_block",
         "spaces.oblique_slide",
         "spaces.driven_cylinder",
+        "spaces.driven_cube",
         "spaces.pipe_flow",
     ),
     # One scene for each granular law.

@@ -1,7 +1,7 @@
-"""A Neo-Hookean square between smooth walls, driven by the body force that makes its motion exact.
+"""A Neo-Hookean square, or cube, between smooth walls, driven by the body force that makes its motion exact.
 
 u = A sin(pi X) sin(c pi t), v = A sin(pi Y) sin(c pi t + pi), A = 0.05 m, c = sqrt(E/rho) (Wallstedt & Guilkey 2008, J.
-Comput. Phys. 227).
+Comput. Phys. 227); in three dimensions w = A sin(pi Z) sin(c pi t) besides.
 """
 
 import math
@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from grainlaw.materials.rheology import shear_modulus
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.simulation import Simulation
-from grainlaw.validation.scenes import advance, simulation_of
+from grainlaw.mpm_core.space import PLANE_STRAIN, Space
+from grainlaw.validation.scenes import advance, block, simulation_of
 
 Array = NDArray[np.float64]
 
@@ -24,8 +25,8 @@ LAME = BULK_MODULUS - 2.0 / 3.0 * SHEAR_MODULUS
 SPEED = math.sqrt(YOUNGS_MODULUS / DENSITY)
 AMPLITUDE = 0.05
 PERIOD = 2.0 / SPEED
-# The displacement along y runs half a period behind the one along x.
-PHASES = np.array([[0.0], [math.pi]])
+# The displacement along y runs half a period behind the others.
+PHASES = np.array([[0.0], [math.pi], [0.0]])
 # Without decay of velocities, which would damp the motion.
 UNDAMPED = 1e6
 # Of the period, after which the place and the stress are compared with the exact ones.
@@ -33,42 +34,42 @@ COMPARISONS = 20
 
 
 def displacement(places: Array, time: float) -> Array:
-    """U = A sin(pi X) sin(c pi t + phase) of the places at the start, along each axis; shape (2, n) [m]."""
-    return AMPLITUDE * np.sin(math.pi * places) * np.sin(SPEED * math.pi * time + PHASES)
+    """U = A sin(pi X) sin(c pi t + phase) of the places at the start, along each axis; shape (axes, n) [m]."""
+    return AMPLITUDE * np.sin(math.pi * places) * np.sin(SPEED * math.pi * time + PHASES[: len(places)])
 
 
 def velocity(places: Array, time: float) -> Array:
-    """Of the same places, shape (2, n) [m/s]."""
+    """Of the same places, shape (axes, n) [m/s]."""
     rate = SPEED * math.pi
-    return AMPLITUDE * rate * np.sin(math.pi * places) * np.cos(rate * time + PHASES)
+    return AMPLITUDE * rate * np.sin(math.pi * places) * np.cos(rate * time + PHASES[: len(places)])
 
 
 def velocity_gradient_at_start(places: Array) -> Array:
-    """The two diagonal components, shape (2, n) [1/s]."""
-    return AMPLITUDE * math.pi * SPEED * math.pi * np.cos(math.pi * places) * np.cos(PHASES)
+    """The diagonal components, shape (axes, n) [1/s]."""
+    return AMPLITUDE * math.pi * SPEED * math.pi * np.cos(math.pi * places) * np.cos(PHASES[: len(places)])
 
 
 def stretch(places: Array, time: float) -> Array:
-    """The two diagonal components of F, shape (2, n)."""
-    return 1.0 + AMPLITUDE * math.pi * np.cos(math.pi * places) * np.sin(SPEED * math.pi * time + PHASES)
+    """The diagonal components of F, shape (axes, n)."""
+    return 1.0 + AMPLITUDE * math.pi * np.cos(math.pi * places) * np.sin(SPEED * math.pi * time + PHASES[: len(places)])
 
 
 def body_force(places: Array, time: float) -> Array:
-    """Acceleration b = d2u/dt2 - (1/rho_0) dP/dX with the first Piola-Kirchhoff stress P; shape (2, n) [m/s2].
+    """Acceleration b = d2u/dt2 - (1/rho_0) dP/dX with the first Piola-Kirchhoff stress P; shape (axes, n) [m/s2].
 
-    P_11 = G (F_1 - 1/F_1) + Lambda ln(F_1 F_2)/F_1 and dF_1/dX = -pi^2 u, so that
-    dP_11/dX = -pi^2 u [G + (G + Lambda (1 - ln J))/F_1^2]; the same along y.
+    P_11 = G (F_1 - 1/F_1) + Lambda ln(J)/F_1 and dF_1/dX = -pi^2 u, so that
+    dP_11/dX = -pi^2 u [G + (G + Lambda (1 - ln J))/F_1^2]; the same along the others.
     """
     u, f = displacement(places, time), stretch(places, time)
-    log_volume = np.log(f[0] * f[1])
+    log_volume = np.log(f.prod(axis=0))
     stiffness = SHEAR_MODULUS + (SHEAR_MODULUS + LAME * (1.0 - log_volume)) / f**2
     return math.pi**2 * u * (stiffness / DENSITY - SPEED**2)
 
 
 def stress(places: Array, time: float) -> Array:
-    """Cauchy stresses along x and y, shape (2, n) [Pa]."""
+    """Cauchy stresses along the axes, shape (axes, n) [Pa]."""
     f = stretch(places, time)
-    volume_ratio = f[0] * f[1]
+    volume_ratio = f.prod(axis=0)
     return (SHEAR_MODULUS * (f**2 - 1.0) + LAME * np.log(volume_ratio)) / volume_ratio
 
 
@@ -80,7 +81,7 @@ class Errors(NamedTuple):
 
 
 class DrivenSquare:
-    """The unit square at the start of its motion; a control multiplies the body force.
+    """The unit square, or cube, at the start of its motion; a control multiplies the body force.
 
     `settings` are tables of the scene, `grid`, `time` and `transfer`, with what a case chooses in them.
     """
@@ -92,8 +93,9 @@ class DrivenSquare:
         settings: dict[str, dict[str, Any]],
         force_factor: float = 1.0,
         precision: str = "double",
+        space: Space = PLANE_STRAIN,
     ) -> None:
-        self.simulation = simulation_of({**_scene(cells, points_per_cell, settings), "precision": precision})
+        self.simulation = simulation_of({**_scene(cells, points_per_cell, settings, space), "precision": precision})
         self.body = self.simulation.bodies[0]
         self.places = self.body.positions.copy()
         self.force_factor = force_factor
@@ -103,7 +105,7 @@ class DrivenSquare:
         self.simulation.body_force = self.force
 
     def force(self, body: Body, time: float) -> Array:
-        """Acceleration of the points in their present order, shape (2, n) [m/s2]."""
+        """Acceleration of the points in their present order, shape (axes, n) [m/s2]."""
         return self.force_factor * body_force(self.places[:, body.ids], time)
 
     def errors_of_a_period(self) -> Errors:
@@ -115,27 +117,29 @@ class DrivenSquare:
     def _errors(self, present: Simulation) -> Errors:
         places = self.places[:, self.body.ids]
         off = self.body.positions - places - displacement(places, present.time)
-        off_stress = self.body.stress[:2] - stress(places, present.time)
+        off_stress = self.body.stress[: len(places)] - stress(places, present.time)
         return Errors(
             float(np.sqrt((off**2).sum(axis=0).mean())) / AMPLITUDE,
             float(np.sqrt((off_stress**2).sum(axis=0).mean())) / YOUNGS_MODULUS,
         )
 
 
-def _scene(cells: int, points_per_cell: int, settings: dict[str, dict[str, Any]]) -> dict[str, Any]:
+def _scene(cells: int, points_per_cell: int, settings: dict[str, dict[str, Any]], space: Space) -> dict[str, Any]:
+    lower, upper = [0.0] * space.axes, [1.0] * space.axes
     tables: dict[str, dict[str, Any]] = {
-        "grid": {"cell_size": 1.0 / cells, "upper": [1.0, 1.0]},
+        "grid": {"cell_size": 1.0 / cells, "upper": upper},
         "time": {"end": PERIOD},
         "transfer": {"time_constant": UNDAMPED},
     }
     square = {
         "material": "neo_hookean",
-        "shape": {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [1.0, 1.0]},
+        "shape": block(lower, upper),
         "density": DENSITY,
         "points_per_cell": points_per_cell,
     }
     return {
-        "gravity": [0.0, 0.0],
+        "space": space.name,
+        "gravity": lower,
         "material": {"neo_hookean": {"bulk_modulus": BULK_MODULUS, "poisson_ratio": POISSON_RATIO}},
         "body": [square],
         **{name: {**table, **settings.get(name, {})} for name, table in tables.items()},
