@@ -16,7 +16,6 @@ from grainlaw.mpm_core.kernels.simd.registers import (
     put,
     quad_at,
     second_half,
-    single_quad_at,
     twice_at,
     two_numbers,
 )
@@ -30,8 +29,7 @@ def make_gather(basis: Basis, component: int, with_gradients: bool, precision: s
     With gradients, a sum along y and its gradient go side by side.
     """
     width, first_component = basis.width, np.uint64(component)
-    quad_of_precision = quad_at if precision == "double" else single_quad_at
-    values_at, weights_at = (twice_at, _weight_and_slope) if with_gradients else (quad_of_precision, _weight)
+    values_at, weights_at = (twice_at, _weight_and_slope) if with_gradients else (quad_at, _weight)
 
     @register_jitable(forceinline=True)
     @named(f"{basis.name}_{component}_{with_gradients:d}_{precision}_{CORE_MARK}")

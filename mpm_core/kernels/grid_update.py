@@ -1,5 +1,8 @@
 """The momentum equation on the grid: m dv/dt = f + m g."""
 
+from collections.abc import Callable
+from functools import cache
+
 import numpy as np
 from numba import njit, prange
 from numba.extending import register_jitable
@@ -8,11 +11,7 @@ from numpy.typing import NDArray
 from grainlaw.materials.compilation import named
 from grainlaw.mpm_core.grid.active_nodes import ActiveNodes
 from grainlaw.mpm_core.grid.grid import BULK_COMPONENTS, COMPONENTS, NODE_OF, Grid
-from grainlaw.mpm_core.kernels.simd.arithmetic import halves_joined, halves_swapped
-from grainlaw.mpm_core.kernels.simd.registers import put, quad_at
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
-
-_PLANE, _IN_3D = NODE_OF[2], NODE_OF[3]
 
 
 def clear_nodes(nodes: NDArray[np.float64], grid: Grid, active: ActiveNodes) -> None:
@@ -31,8 +30,7 @@ def update_nodes(grid: Grid, active: ActiveNodes, gravity: tuple[float, ...], dt
 
     If `couples`, turn the volumes and pressures as well, into the averages that `volume_coupling` takes.
     """
-    update = _update if grid.space.axes == 2 else _update_3d
-    update(grid.nodes, grid.bulk, grid.shape[-1], active.columns, gravity, dt, couples)
+    _make_update(grid.space.axes)(grid.nodes, grid.bulk, grid.shape[-1], active.columns, gravity, dt, couples)
 
 
 @njit(parallel=True, cache=True)
@@ -44,40 +42,34 @@ def _clear(numbers, components, column, active):  # type: ignore[no-untyped-def]
             numbers[(start + active.first_rows[i]) * components : (start + active.last_rows[i] + 1) * components] = 0.0
 
 
-@njit(parallel=True, error_model="numpy", cache=True)
-@named(CORE_MARK)
-def _update(nodes, bulk, column, active, gravity, dt, couples):  # type: ignore[no-untyped-def]
-    impulse = np.array([dt * gravity[0], dt * gravity[1], 0.0, 0.0])
-    for i in prange(active.first_column, active.last_column + 1):
-        fall = quad_at(impulse, 0)
-        for j in range(active.first_rows[i], active.last_rows[i] + 1):
-            node = np.uint64((i * column + j) * COMPONENTS)
-            mass = nodes[node + np.uint64(_PLANE.mass)]
-            if mass > 0.0:
-                old_and_push = quad_at(nodes, node) * (1.0 / mass)
-                push_and_old = halves_swapped(old_and_push)
-                new = old_and_push + dt * push_and_old + fall
-                put(nodes, node, halves_joined(new, push_and_old))
-                if couples:
-                    _average(nodes, node + np.uint64(_PLANE.bulk), mass)
+@cache
+def _make_update(axes: int) -> Callable[..., None]:
+    of_mass, of_momentum, of_force, of_bulk = (
+        NODE_OF[axes].mass,
+        NODE_OF[axes].momentum,
+        NODE_OF[axes].force,
+        NODE_OF[axes].bulk,
+    )
 
+    @njit(parallel=True, error_model="numpy", cache=True)
+    @named(f"{axes}_{CORE_MARK}")
+    def update(nodes, bulk, column, active, gravity, dt, couples):  # type: ignore[no-untyped-def]
+        for i in prange(active.first_column, active.last_column + 1):
+            for number in range(i * column + active.first_rows[i], i * column + active.last_rows[i] + 1):
+                node = np.uint64(number * COMPONENTS)
+                mass = nodes[node + np.uint64(of_mass)]
+                if mass > 0.0:
+                    per_mass = 1.0 / mass
+                    for axis in range(axes):
+                        momentum, force = node + np.uint64(of_momentum + axis), node + np.uint64(of_force + axis)
+                        old, push = nodes[momentum] * per_mass, nodes[force] * per_mass
+                        nodes[momentum], nodes[force] = old + dt * push + dt * gravity[axis], old
+                    if couples and axes == 2:
+                        _average(nodes, node + np.uint64(of_bulk), mass)
+                    elif couples:
+                        _average(bulk, np.uint64(number * BULK_COMPONENTS), mass)
 
-@njit(parallel=True, error_model="numpy", cache=True)
-@named(CORE_MARK)
-def _update_3d(nodes, bulk, column, active, gravity, dt, couples):  # type: ignore[no-untyped-def]
-    for i in prange(active.first_column, active.last_column + 1):
-        for j in range(active.first_rows[i], active.last_rows[i] + 1):
-            number = i * column + j
-            node = np.uint64(number * COMPONENTS)
-            mass = nodes[node + np.uint64(_IN_3D.mass)]
-            if mass > 0.0:
-                per_mass = 1.0 / mass
-                for axis in range(3):
-                    momentum, force = node + np.uint64(_IN_3D.momentum + axis), node + np.uint64(_IN_3D.force + axis)
-                    old, push = nodes[momentum] * per_mass, nodes[force] * per_mass
-                    nodes[momentum], nodes[force] = old + dt * push + dt * gravity[axis], old
-                if couples:
-                    _average(bulk, np.uint64(number * BULK_COMPONENTS), mass)
+    return update
 
 
 @register_jitable(forceinline=True)

@@ -28,8 +28,6 @@ from grainlaw.mpm_core.kernels.law_at_points import (
     ordered_bits,
 )
 from grainlaw.mpm_core.kernels.rows import rows_of
-from grainlaw.mpm_core.kernels.simd.arithmetic import filled, first_lanes, total
-from grainlaw.mpm_core.kernels.simd.registers import LANES, quad_at
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.kernels.volume_coupling import (
     closing_strain,
@@ -169,12 +167,18 @@ def make_work_done(space: Space, precision: str) -> Callable[..., Any]:
             works[k] = half * (works[k] + power(rows, p, dt) * volumes[k])
             if hoop:
                 works[k] *= rows[mass_row][p]
-        # In four sums side by side: an addition waits for the one before it.
-        sums = filled(0.0)
-        for p in range(first, last, LANES):
-            work = quad_at(works, p - first)
-            sums = sums + (work if p + np.uint64(LANES) <= last else first_lanes(work, float(last - p), 0.0))
-        return total(sums)
+        # In four sums side by side: an addition waits for the one before it. None is left over behind the last point.
+        count = last - first
+        works[count : count + np.uint64(3)] = 0.0
+        a, b, c, d = 0.0, 0.0, 0.0, 0.0
+        for k in range(np.uint64(0), count, np.uint64(4)):
+            a, b, c, d = (
+                a + works[k],
+                b + works[k + np.uint64(1)],
+                c + works[k + np.uint64(2)],
+                d + works[k + np.uint64(3)],
+            )
+        return a + b + c + d
 
     return work_done
 

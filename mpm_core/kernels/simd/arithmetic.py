@@ -14,7 +14,7 @@ from numba.core import types
 from numba.core.cgutils import get_or_insert_function
 from numba.extending import intrinsic, overload, register_jitable
 
-from grainlaw.mpm_core.kernels.simd.registers import INDEX, LANES, SCALARS, LanesType, converted, shuffled, vector_of
+from grainlaw.mpm_core.kernels.simd.registers import INDEX, SCALARS, LanesType, converted, shuffled, vector_of
 
 
 def _in_all_lanes(builder: Any, scalar: Any, kind: LanesType) -> Any:
@@ -43,16 +43,6 @@ def _filled(typing_context: Any, scalar: Any, like: Any) -> Any:
     return like(types.float64, like), generate
 
 
-@intrinsic
-def _filled_quad(typing_context: Any, scalar: Any) -> Any:
-    kind = LanesType(types.float64, LANES)
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return _in_all_lanes(builder, arguments[0], kind)
-
-    return kind(types.float64), generate
-
-
 def _turned_into(number: Any) -> Any:
     """The nearest numbers of a kind."""
 
@@ -76,22 +66,6 @@ def _fused(typing_context: Any, factor: Any, a: Any, b: Any) -> Any:
         return _call(builder, "fma", *arguments)
 
     return a(a, a, a), generate
-
-
-@intrinsic
-def _halves_swapped(typing_context: Any, quad: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return shuffled(builder, arguments[0], arguments[0], [2, 3, 0, 1])
-
-    return quad(quad), generate
-
-
-@intrinsic
-def _halves_joined(typing_context: Any, a: Any, b: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return shuffled(builder, arguments[0], arguments[1], [0, 1, 6, 7])
-
-    return a(a, a), generate
 
 
 @intrinsic
@@ -226,12 +200,6 @@ _largest = _reduced(_larger_of)
 
 
 @register_jitable(forceinline=True)
-def filled(number: float) -> Any:
-    """A quad of a number."""
-    return _filled_quad(number)  # type: ignore[call-arg]
-
-
-@register_jitable(forceinline=True)
 def filled_like(number: float, like: Any) -> Any:
     """A number in all lanes, of the kind of others."""
     return _filled(number, like)  # type: ignore[call-arg]
@@ -264,18 +232,6 @@ def rounding_to(precision: str) -> Callable[..., Any]:
 def scaled_sum(factor: Any, a: Any, b: Any) -> Any:
     """Return factor * a + b, rounded once; the factor may be a number."""
     return _fused(as_lanes(factor, a), a, b)  # type: ignore[call-arg]
-
-
-@register_jitable(forceinline=True)
-def halves_swapped(quad: Any) -> Any:
-    """The second half of a quad, then its first."""
-    return _halves_swapped(quad)  # type: ignore[call-arg]
-
-
-@register_jitable(forceinline=True)
-def halves_joined(a: Any, b: Any) -> Any:
-    """The first half of a, the second of b."""
-    return _halves_joined(a, b)  # type: ignore[call-arg]
 
 
 @register_jitable(forceinline=True)

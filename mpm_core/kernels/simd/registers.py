@@ -2,9 +2,9 @@
 
 The transfers use them in two ways: as one quantity of neighbouring points, which are then worked on together, and as
 components of one grid node, which a point changes together. `put_transposed` and `transposed_at` lead from one to the
-other. A quad is four doubles; of points, four doubles or eight singles are taken at once.
+other. A quad is four numbers; of points, four doubles or eight singles are taken at once.
 
-Arithmetic (`lane_arithmetic`) is written as for scalars. Each lane is rounded like the scalar expression would be, so
+Arithmetic (`arithmetic`) is written as for scalars. Each lane is rounded like the scalar expression would be, so
 that the width of the machine's registers changes the time, not the result.
 """
 
@@ -103,16 +103,14 @@ def _loading(kind_of: Any) -> Any:
 
         def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             values, place = arguments
-            vector = load(context, builder, signature.args[0], values, place, kind.count)
-            return converted(builder, vector, kind.number)
+            return load(context, builder, signature.args[0], values, place, kind.count)
 
         return kind(array, position), generate
 
     return loaded
 
 
-_quad_at = _loading(lambda number: LanesType(types.float64, LANES))
-_single_quad_at = _loading(lambda number: LanesType(types.float32, LANES))
+_quad_at = _loading(lambda number: LanesType(number, LANES))
 _several_at = _loading(_several)
 _pair_at = _loading(lambda number: LanesType(number, 2))
 _oct_at = _loading(lambda number: LanesType(number, 2 * LANES))
@@ -248,14 +246,8 @@ def _transposed_at(typing_context: Any, vectors: Any, position: Any, stride: Any
 
 @register_jitable(forceinline=True)
 def quad_at(array: Any, position: Any) -> Any:
-    """The four numbers from a position on, as doubles."""
+    """The four numbers from a position on, as they are stored."""
     return _quad_at(array, position)
-
-
-@register_jitable(forceinline=True)
-def single_quad_at(array: Any, position: Any) -> Any:
-    """The four numbers from a position on, as singles."""
-    return _single_quad_at(array, position)
 
 
 @register_jitable(forceinline=True)
