@@ -97,7 +97,7 @@ def _state(simulation: "Simulation", dt: float) -> str:
 
 
 def _line(simulation: "Simulation", dt: float, end: float) -> str:
-    kinetic = f"kinetic energy {simulation.ledger.kinetic:.3g} J/m"
+    kinetic = f"kinetic energy {simulation.ledger.kinetic:.3g} J{simulation.space.amount}"
     return f"{_state(simulation, dt)}, {kinetic}, {simulation.time / end:.0%}"
 
 

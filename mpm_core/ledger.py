@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass
 class Ledger:
-    """Energies per width [J/m]: potential energy relative to the start, works since the start.
+    """Energies [J and the space's amount]: potential energy relative to the start, works since the start.
 
     Velocities belong to the middles of steps, and so do kinetic energy, potential energy and internal work: half of the
     last step's rise and work is still to come. A balance of energies at different times would be wrong by the work of
@@ -37,7 +37,7 @@ class Ledger:
         self.rise_to_come, self.work_to_come = 0.5 * risen, 0.5 * worked
 
     def count_projection(self, raised: float) -> None:
-        """Take in what the points rose by being moved apart [J/m]."""
+        """Take in what the points rose by being moved apart [as energies]."""
         self.potential += raised
         self.volume_projection += raised
 
@@ -50,9 +50,9 @@ class Ledger:
 
     @property
     def kinetic_at_end(self) -> float:
-        """Kinetic energy at the end of the step, with what its second half will bring [J/m]."""
+        """Kinetic energy at the end of the step, with what its second half will bring [as energies]."""
         return self.kinetic - self.rise_to_come - self.work_to_come
 
     def inelastic_work(self, elastic: float) -> float:
-        """What of the internal work is not in the elastic energy at the end of the step [J/m]: plastic and viscous."""
+        """What of the internal work is not in the elastic energy at the end of the step: plastic and viscous work."""
         return self.internal_work + self.work_to_come - (elastic - self.initial_elastic)

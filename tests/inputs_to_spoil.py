@@ -31,7 +31,7 @@ from grainlaw.mpm_core.output.checkpoint import (
 from grainlaw.mpm_core.output.frame import Field, Frame
 from grainlaw.mpm_core.output.frame_series import FrameSeries
 from grainlaw.mpm_core.output.hdf5_file import USER_BLOCK
-from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, HistoryWriter
+from grainlaw.mpm_core.output.history import HistoryWriter, history_columns
 from grainlaw.mpm_core.output.prepare import cut_vtkhdf
 from grainlaw.mpm_core.output.quantities import write_quantities
 from grainlaw.mpm_core.output.run_folder import RunFolder
@@ -177,7 +177,7 @@ def _run(spoils: str) -> Callable[[Path], Path]:
         frames, history = FrameSeries(folder), HistoryWriter(folder)
         for step in range(2):
             frames.write(_frame(step))
-            history.append({column.name: step for column in HISTORY_COLUMNS})
+            history.append({column.name: step for column in history_columns()})
         write_quantities(folder, _frame(0).fields)
         write_summary(folder, SUMMARY)
         return folder / spoils

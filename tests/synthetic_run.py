@@ -4,7 +4,7 @@ import numpy as np
 
 from grainlaw.mpm_core.output.frame import Field, Frame
 from grainlaw.mpm_core.output.frame_series import FrameSeries
-from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, HistoryWriter
+from grainlaw.mpm_core.output.history import HistoryWriter, history_columns
 from grainlaw.mpm_core.output.quantities import write_quantities
 
 FRAMES = 11
@@ -37,7 +37,7 @@ def frame(number, growth=1.5):
 def history_row(step, growth=1.5):
     """The scalars at a step of 1 ms."""
     share = step / (100 * (FRAMES - 1))
-    row = {column.name: 0 if column.whole_number else 0.0 for column in HISTORY_COLUMNS}
+    row = {column.name: 0 if column.whole_number else 0.0 for column in history_columns()}
     row |= {"t": step * FRAME_INTERVAL / 100, "step": step, "dt": 1e-3, "runout": COLUMN_WIDTH * (1 + growth * share)}
     row |= {"height": COLUMN_HEIGHT / (1 + growth * share), "kinetic_energy": share * (1 - share)}
     return row

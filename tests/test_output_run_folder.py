@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from synthetic_run import FRAMES, frame, history_row, write_run
 
 from grainlaw.materials import InputError
-from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, HistoryWriter, keep_rows, read_history
+from grainlaw.mpm_core.output.history import HistoryWriter, history_columns, keep_rows, read_history
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.output.summary import RunSummary, read_summary, write_summary
 
@@ -41,7 +41,7 @@ def write_history(folder, steps):
 def test_history_reads_back_exactly_and_by_column(tmp_path):
     write_history(tmp_path, range(4))
     history = read_history(tmp_path)
-    assert history.dtype.names == tuple(column.name for column in HISTORY_COLUMNS)
+    assert history.dtype.names == tuple(column.name for column in history_columns())
     assert history["step"].dtype.kind == "i"
     for number in range(4):
         assert dict(zip(history.dtype.names, history[number].tolist(), strict=True)) == history_row(number)

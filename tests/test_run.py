@@ -21,7 +21,7 @@ from scenes_for_tests import (
 from grainlaw.materials import InputError, SimulationError
 from grainlaw.mpm_core import Scene, run
 from grainlaw.mpm_core.output.frame_series import read_collection
-from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, read_history
+from grainlaw.mpm_core.output.history import history_columns, read_history
 from grainlaw.mpm_core.output.run_folder import RunFolder
 
 __all__ = ["fresh_registry"]
@@ -85,7 +85,7 @@ def test_the_summary_has_the_agreed_keys_and_agrees_with_the_run(column_run):
 def test_the_history_goes_from_the_start_to_the_end_without_a_step_twice(column_run):
     _, folder = column_run
     history = folder.history
-    assert history.dtype.names == tuple(column.name for column in HISTORY_COLUMNS)
+    assert history.dtype.names == tuple(column.name for column in history_columns())
     assert (history["t"][0], history["t"][-1], history["step"][0]) == (0.0, 0.3, 0)
     assert (np.diff(history["step"]) > 0).all()
     assert (np.diff(history["t"]) > 0).all()

@@ -13,7 +13,7 @@ from grainlaw.materials.compilation import make_single_step, pointwise_law
 from grainlaw.materials.precision import PRECISIONS, as_numbers
 from grainlaw.materials.single_precision import in_single, nearest_single
 from grainlaw.mpm_core.kernels.positions import positions_of
-from grainlaw.mpm_core.output.observables import pile_shape
+from grainlaw.mpm_core.output.observables import shape_of
 
 LAWS = registry().laws
 THAT_HOLD = [name for name, entry in LAWS.items() if entry.law.holds_in_single]
@@ -112,7 +112,7 @@ def test_a_pile_in_single_precision_is_that_in_double():
     for precision in PRECISIONS:
         case = simulation(COLUMN, {"precision": precision})
         case.advance_to(0.5)
-        shapes.append(pile_shape(case.bodies, 0.0, case.grid.cell_size))
+        shapes.append(shape_of(case))
     double, single = shapes
     assert single != double
     assert single.runout == pytest.approx(double.runout, rel=1e-3)

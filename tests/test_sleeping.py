@@ -11,7 +11,7 @@ from grainlaw.mpm_core import Scene, run
 from grainlaw.mpm_core.grid.grid import COMPONENTS, NODE_OF
 from grainlaw.mpm_core.output.checkpoint import Clock, read_checkpoint, write_checkpoint
 from grainlaw.mpm_core.output.history import read_history
-from grainlaw.mpm_core.output.observables import pile_shape
+from grainlaw.mpm_core.output.observables import shape_of
 from grainlaw.mpm_core.stepping import sleeping
 from grainlaw.validation.scenes import advance
 
@@ -48,7 +48,7 @@ def led_to(content, end, changes=None, threads=1):
 
 
 def shape(case):
-    found = pile_shape(case.bodies, case.grid.lower[1], case.grid.cell_size)
+    found = shape_of(case)
     return np.array([found.runout, found.height, found.center_of_mass_height])
 
 

@@ -35,6 +35,7 @@ def compare(
     from rich.console import Console
     from rich.table import Table
 
+    from grainlaw.mpm_core.output.history import energy_unit
     from grainlaw.mpm_core.output.run_folder import RunFolder
 
     if dem:
@@ -49,7 +50,7 @@ def compare(
         "runout [m]",
         "height [m]",
         "centre of mass [m]",
-        "kinetic [J/m]",
+        "kinetic energy",
         "wall [s]",
     ):
         table.add_column(heading, justify="left" if heading in ("run", "law") else "right")
@@ -63,10 +64,10 @@ def compare(
             f"{final.runout:.4f}",
             f"{final.height:.4f}",
             f"{final.center_of_mass_height:.4f}",
-            f"{final.kinetic_energy:.3g}",
+            f"{final.kinetic_energy:.3g} {energy_unit(run.space)}",
             f"{summary.wall_time:.1f}",
         )
-    Console(width=120).print(table)
+    Console(width=120, markup=False).print(table)
     if out is not None:
         _draw(runs, out, field)
 

@@ -50,7 +50,7 @@ def plan(
     }
     for name, value in rows.items():
         table.add_row(name, value)
-    Console(width=110).print(table)
+    Console(width=110, markup=False).print(table)
 
 
 def _kernels(compile_time: float) -> str:

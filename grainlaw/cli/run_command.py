@@ -33,6 +33,7 @@ def run(
     scene = load_scene(scene_file, set_values)
     folder = out or Path("runs") / scene_file.stem
 
+    from grainlaw.mpm_core.output.history import energy_unit
     from grainlaw.mpm_core.parallel.threads import usable_threads
     from grainlaw.mpm_core.stepping.run import run as run_scene
     from grainlaw.progress import shown_progress
@@ -50,10 +51,10 @@ def run(
     except KeyboardInterrupt as interrupt:
         notes = getattr(interrupt, "__notes__", ["stopped by Ctrl-C before the first step; nothing was written"])
         raise SimulationError(notes[-1]) from interrupt
-    _print_result(folder, summary)
+    _print_result(folder, summary, energy_unit(scene.in_space))
 
 
-def _print_result(folder: Path, summary: "RunSummary") -> None:
+def _print_result(folder: Path, summary: "RunSummary", unit: str) -> None:
     final, waited = summary.final, f"{summary.compile_time:.1f} s to compile or load kernels"
     typer.echo(
         f"{summary.scene or folder.name}: t = {summary.simulated_time:g} s, {counted(summary.points, 'point')}, "
@@ -62,7 +63,7 @@ def _print_result(folder: Path, summary: "RunSummary") -> None:
     )
     typer.echo(
         f"runout {final.runout:.4f} m, height {final.height:.4f} m, "
-        f"centre of mass {final.center_of_mass_height:.4f} m, kinetic energy {final.kinetic_energy:.3g} J/m"
+        f"centre of mass {final.center_of_mass_height:.4f} m, kinetic energy {final.kinetic_energy:.3g} {unit}"
     )
     counts = ", ".join(
         f"{count} {name.removeprefix('points_').replace('_', ' ')}" for name, count in summary.limited.items()

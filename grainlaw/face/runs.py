@@ -12,7 +12,7 @@ from grainlaw.face.scenes import SceneSource, as_scene
 from grainlaw.face.tables import data_frame
 from grainlaw.materials.errors import InputError, nearest_name
 from grainlaw.mpm_core.output.frame import Frame
-from grainlaw.mpm_core.output.history import HISTORY_COLUMNS, HISTORY_NAME
+from grainlaw.mpm_core.output.history import HISTORY_NAME, history_columns
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.output.summary import RunSummary
 
@@ -53,7 +53,7 @@ class Run:
     @property
     def units(self) -> dict[str, str]:
         """The SI unit of each column of the history by name."""
-        return {column.name: column.unit for column in HISTORY_COLUMNS}
+        return {column.name: column.unit for column in history_columns(self.folder.space)}
 
     def to_frame(self) -> "DataFrame":
         """The history as a pandas table, with the units in its `attrs`. Raises InputError without pandas."""

@@ -1,7 +1,7 @@
 """Tables of what a run writes: fields of a frame, columns of the history."""
 
 from grainlaw.mpm_core.output.fields import BODY_FIELD, FIELDS
-from grainlaw.mpm_core.output.history import HISTORY_COLUMNS
+from grainlaw.mpm_core.output.history import columns_in_all_spaces
 from grainlaw.reference.markdown import code, table
 
 
@@ -17,5 +17,5 @@ def field_table() -> str:
 
 def history_table() -> str:
     """The columns of history.csv."""
-    rows = [[code(column.name), column.unit, column.doc] for column in HISTORY_COLUMNS]
+    rows = [[code(column.name), column.unit, column.doc] for column in columns_in_all_spaces()]
     return table(["column", "unit", "meaning"], rows)

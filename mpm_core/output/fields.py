@@ -68,7 +68,7 @@ def _volumetric_strain_rate(body: Body) -> Array:
 FIELDS = {
     field.name: field
     for field in (
-        FieldDeclaration("velocity", "m/s", "velocity", _velocity),
+        FieldDeclaration("velocity", "m/s", "velocity; in axisymmetry along the radius and upwards", _velocity),
         FieldDeclaration("pressure", "Pa", "p = -tr(sigma)/3, compression-positive", _stress_invariant(pressure)),
         FieldDeclaration("deviatoric_stress", "Pa", "q = sqrt(3/2 s:s)", _stress_invariant(deviatoric_stress)),
         FieldDeclaration(
@@ -83,7 +83,10 @@ FIELDS = {
         FieldDeclaration("stress_xx", "Pa", "sigma_xx, tension-positive", _stress_component("xx")),
         FieldDeclaration("stress_yy", "Pa", "sigma_yy, tension-positive", _stress_component("yy")),
         FieldDeclaration(
-            "stress_zz", "Pa", "sigma_zz, tension-positive; in axisymmetry around the axis", _stress_component("zz")
+            "stress_zz",
+            "Pa",
+            "sigma_zz, tension-positive; in axisymmetry the hoop stress, around the axis",
+            _stress_component("zz"),
         ),
         FieldDeclaration("stress_xy", "Pa", "sigma_xy", _stress_component("xy")),
         FieldDeclaration("stress_yz", "Pa", "sigma_yz; zero but in 3D", _stress_component("yz")),

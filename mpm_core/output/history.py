@@ -1,7 +1,7 @@
 """`history.csv`: scalars of the whole run, one row per recorded step."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -9,48 +9,74 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grainlaw.materials import InputError, atomic
+from grainlaw.mpm_core.space import PLANE_STRAIN, SPACES, Space
 
 HISTORY_NAME = "history.csv"
 
 
 @dataclass(frozen=True)
 class HistoryColumn:
-    """One column: name, SI unit, doc, and whether its values are whole numbers."""
+    """One column: name, SI unit, doc, and whether its values are whole numbers.
+
+    `in_spaces` is the doc by the name of a space, where that makes a difference. An energy has the unit J and its doc
+    says "{per}" where it tells what the energy is per, as the space has it.
+    """
 
     name: str
     unit: str
     doc: str
     whole_number: bool = False
+    in_spaces: Mapping[str, str] = field(default_factory=dict)
+
+    def in_space(self, space: Space) -> "HistoryColumn":
+        """The column with the unit and the doc that it has in a space."""
+        unit = energy_unit(space) if self.unit == "J" else self.unit
+        doc = self.in_spaces.get(space.name, self.doc).format(per=_PER[space.amount])
+        return replace(self, unit=unit, doc=doc, in_spaces={})
+
+    def in_all_spaces(self) -> "HistoryColumn":
+        """The column with the units and the docs that it has in one or the other space."""
+        unit = ", ".join(energy_unit(space) for space in SPACES.values()) if self.unit == "J" else self.unit
+        docs = [self.doc, *(f"{_IN_WORDS[name]} {doc}" for name, doc in self.in_spaces.items())]
+        return replace(self, unit=unit, doc="; ".join(docs).format(per=""), in_spaces={})
 
 
-HISTORY_COLUMNS = (
+# What amounts are per, and how spaces are named in a sentence.
+_PER = {"/m": " per width", "/rad": " per radian", "": ""}
+_IN_WORDS = {"axisymmetric": "in axisymmetry", "3d": "in 3D"}
+
+
+def energy_unit(space: Space) -> str:
+    """The unit of energies in a space."""
+    return f"J{space.amount}"
+
+
+_COLUMNS = (
     HistoryColumn("t", "s", "time"),
     HistoryColumn("dt", "s", "time step"),
-    HistoryColumn("runout", "m", "half of the distance between the fronts"),
+    HistoryColumn(
+        "runout",
+        "m",
+        "half of the distance between the fronts",
+        in_spaces={
+            "axisymmetric": "the radius beyond which lies 2 % of the mass",
+            "3d": "the horizontal distance from where the bodies' middle was, beyond which lies 2 % of the mass",
+        },
+    ),
     HistoryColumn("front_left", "m", "x to the left of which lies 1 % of the mass"),
     HistoryColumn("front_right", "m", "x to the right of which lies 1 % of the mass"),
     HistoryColumn("height", "m", "level above which lies one cell's worth of material, from the floor of the domain"),
     HistoryColumn("center_of_mass_height", "m", "height of the centre of mass above the floor of the domain"),
+    HistoryColumn("kinetic_energy", "J", "kinetic energy{per} in the middle of the last step, where velocities belong"),
+    HistoryColumn("potential_energy", "J", "potential energy of gravity{per} relative to the start"),
+    HistoryColumn("internal_work", "J", "work of the stress{per} since the start, elastic or not"),
+    HistoryColumn("elastic_energy", "J", "elastic energy{per}; nan where a law does not state it (`stored_energy`)"),
+    HistoryColumn("inelastic_work", "J", "plastic and viscous work{per} since the start: internal work not stored"),
+    HistoryColumn("wall_work", "J", "work done on the walls{per} since the start: friction and what they stop"),
+    HistoryColumn("wall_friction", "J", "part of `wall_work` that sliding on friction walls dissipated"),
+    HistoryColumn("numerical_dissipation", "J", "energy that transfers and time integration took{per} since the start"),
     HistoryColumn(
-        "kinetic_energy", "J/m", "kinetic energy per width in the middle of the last step, where velocities belong"
-    ),
-    HistoryColumn("potential_energy", "J/m", "potential energy of gravity per width relative to the start"),
-    HistoryColumn("internal_work", "J/m", "work of the stress per width since the start, elastic or not"),
-    HistoryColumn(
-        "elastic_energy", "J/m", "elastic energy per width; nan where a law does not state it (`stored_energy`)"
-    ),
-    HistoryColumn(
-        "inelastic_work", "J/m", "plastic and viscous work per width since the start: internal work not stored"
-    ),
-    HistoryColumn("wall_work", "J/m", "work done on the walls per width since the start: friction and what they stop"),
-    HistoryColumn("wall_friction", "J/m", "part of `wall_work` that sliding on friction walls dissipated"),
-    HistoryColumn(
-        "numerical_dissipation", "J/m", "energy that transfers and time integration took per width since the start"
-    ),
-    HistoryColumn(
-        "volume_projection",
-        "J/m",
-        "part of `potential_energy` that points gained by being moved apart, since the start",
+        "volume_projection", "J", "part of `potential_energy` that points gained by being moved apart, since the start"
     ),
     HistoryColumn(
         "overfill", "1", "mean over the cells inside loose material of the volume of points over the room, less one"
@@ -60,7 +86,17 @@ HISTORY_COLUMNS = (
     HistoryColumn("step", "1", "number of the step", whole_number=True),
     HistoryColumn("wall_time", "s", "wall-clock time since the start of the run"),
 )
-_TYPES: dict[str, type] = {column.name: int if column.whole_number else float for column in HISTORY_COLUMNS}
+_TYPES: dict[str, type] = {column.name: int if column.whole_number else float for column in _COLUMNS}
+
+
+def history_columns(space: Space = PLANE_STRAIN) -> tuple[HistoryColumn, ...]:
+    """The columns of the history of a run in a space; their names are the same in all."""
+    return tuple(column.in_space(space) for column in _COLUMNS)
+
+
+def columns_in_all_spaces() -> tuple[HistoryColumn, ...]:
+    """The columns with the units and the docs of all spaces."""
+    return tuple(column.in_all_spaces() for column in _COLUMNS)
 
 
 class HistoryWriter:
@@ -70,7 +106,7 @@ class HistoryWriter:
         """Continue the history that the folder holds, or start one."""
         path = folder / HISTORY_NAME
         if not path.exists():
-            atomic.write_text(path, _line(column.name for column in HISTORY_COLUMNS))
+            atomic.write_text(path, _line(_TYPES))
         # Without a buffer, from which a row that did not fit on the disk would be written again.
         self._file = path.open("ab", buffering=0)
 

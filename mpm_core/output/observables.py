@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.grid.cell_volumes import cell_volumes
+from grainlaw.mpm_core.output.middle import Middle, middle_of
+from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
 
 # The middle share of the mass between the fronts: single points that roll ahead do not count.
@@ -15,12 +17,30 @@ MASS_BETWEEN_FRONTS = 0.98
 
 
 @dataclass(frozen=True)
+class Measure:
+    """What shapes are measured with.
+
+    floor            level of the floor of the domain [m]
+    cell_size        edge of a cell [m]
+    points_per_cell  of the bodies in the mean, for axisymmetry
+    middle           of the bodies at the start, in 3D
+    """
+
+    floor: float
+    cell_size: float
+    points_per_cell: float = 1.0
+    middle: Middle | None = None
+
+
+@dataclass(frozen=True)
 class PileShape:
     """Extent of the material [m].
 
-    front_left, front_right   beyond each lies 1 % of the mass
-    runout                    half of the distance between the fronts; in axisymmetry the radius of the right one
-    height                    the level above which lies one cell's worth of material, above the floor of the domain
+    front_left, front_right   x beyond which lies 1 % of the mass
+    runout                    half of the distance between the fronts; in axisymmetry the radius, and in 3D the
+                              horizontal distance from the middle, beyond which lies 2 % of the mass
+    height                    the level above which lies one cell's worth of material, above the floor of the domain;
+                              in axisymmetry, where points have masses as their radii, of as many points
     center_of_mass_height     of all points, above the floor of the domain
     """
 
@@ -47,7 +67,18 @@ def interior_overfill(simulation: Simulation) -> InteriorOverfill:
     return InteriorOverfill(float(inside.mean()), float(inside.std())) if inside.size else InteriorOverfill(0.0, 0.0)
 
 
-def pile_shape(bodies: Sequence[Body], floor: float, cell_size: float) -> PileShape:
+def measure_of(scene: Scene) -> Measure:
+    """With what the shapes of a scene's bodies are measured."""
+    points_per_cell = float(np.mean([body.points_per_cell for body in scene.body]))
+    return Measure(scene.grid.lower[scene.in_space.up], scene.grid.cell_size, points_per_cell, middle_of(scene))
+
+
+def shape_of(simulation: Simulation) -> PileShape:
+    """The present shape of all bodies together."""
+    return pile_shape(simulation.bodies, measure_of(simulation.scene))
+
+
+def pile_shape(bodies: Sequence[Body], measure: Measure) -> PileShape:
     """Measure the shape of all bodies together."""
     space = bodies[0].space
     positions = np.concatenate([body.positions for body in bodies], axis=1)
@@ -56,18 +87,25 @@ def pile_shape(bodies: Sequence[Body], floor: float, cell_size: float) -> PileSh
     beyond = 0.5 * (1.0 - MASS_BETWEEN_FRONTS) * mass.sum()
     front_left = _level(x, mass, beyond)
     front_right = -_level(-x, mass, beyond)
-    cell_mass = mass.sum() / len(mass) * _points_per_cell(bodies, cell_size)
+    runout = 0.5 * (front_right - front_left)
+    if space.hoop or measure.middle is not None:
+        away = x if measure.middle is None else measure.middle.distance(positions)
+        runout = -_level(-away, mass, 2.0 * beyond)
+    if space.hoop:
+        top = -_level(-up, np.ones_like(mass), measure.points_per_cell)
+    else:
+        top = -_level(-up, mass, mass.sum() / len(mass) * _points_per_cell(bodies, measure.cell_size))
     return PileShape(
-        runout=front_right if space.hoop else 0.5 * (front_right - front_left),
+        runout=runout,
         front_left=front_left,
         front_right=front_right,
-        height=-_level(-up, mass, cell_mass) - floor,
-        center_of_mass_height=float(np.average(up, weights=mass)) - floor,
+        height=top - measure.floor,
+        center_of_mass_height=float(np.average(up, weights=mass)) - measure.floor,
     )
 
 
 def _level(coordinate: NDArray[np.float64], mass: NDArray[np.float64], share: float) -> float:
-    """The coordinate below which lies `share` [kg/m] of the mass."""
+    """The coordinate below which lies `share` of the mass [as the mass]."""
     count = min(len(mass), int(np.ceil(2.0 * share / mass.min())))
     lowest = np.argpartition(coordinate, count - 1)[:count]
     order = lowest[np.argsort(coordinate[lowest])]
@@ -77,8 +115,6 @@ def _level(coordinate: NDArray[np.float64], mass: NDArray[np.float64], share: fl
 
 
 def _points_per_cell(bodies: Sequence[Body], cell_size: float) -> float:
-    """Points in a full cell, from the sizes of points at the start; in axisymmetry in one at the mean radius."""
-    space = bodies[0].space
+    """Points in a full cell, from the sizes of points at the start."""
     volume = float(np.mean([body.masses.mean() / body.initial_density for body in bodies]))
-    radius = float(np.mean(np.concatenate([body.positions[0] for body in bodies]))) if space.hoop else 1.0
-    return cell_size**space.axes * radius / volume
+    return cell_size ** bodies[0].space.axes / volume

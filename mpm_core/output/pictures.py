@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 
+from grainlaw.mpm_core.output.cut import PLANE, Cut, cuts_of, domain_of
 from grainlaw.mpm_core.output.frame import Frame
-from grainlaw.mpm_core.output.history import HISTORY_COLUMNS
+from grainlaw.mpm_core.output.history import energy_unit, history_columns
 from grainlaw.mpm_core.output.materials_of_points import Materials, materials_of
 from grainlaw.mpm_core.output.picture_style import (
     LEGEND_HEIGHT,
@@ -21,11 +22,12 @@ from grainlaw.mpm_core.output.picture_style import (
     scalar_values,
     time_label,
 )
-from grainlaw.mpm_core.output.point_image import bounding_box, draw_points, point_spacing, view_box
+from grainlaw.mpm_core.output.point_image import Box, bounding_box, draw_points, point_spacing, view_box
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.output.snapshots import draw_snapshots
+from grainlaw.mpm_core.output.solid_picture import draw_solid_frame
 
-_UNITS = {column.name: column.unit for column in HISTORY_COLUMNS}
+_UNITS = {column.name: column.unit for column in history_columns()}
 _ENERGIES = (
     "kinetic_energy",
     "potential_energy",
@@ -46,22 +48,24 @@ def draw_frame(
     limits: tuple[float, float] | None = None,
     spacing: float | None = None,
     materials: Materials | None = None,
+    cut: Cut = PLANE,
 ) -> None:
     """Write a picture of one frame coloured by a field, a vector by its length.
 
     `spacing` [m] is that of the points when they were generated; without it the present distances stand in. Several
-    `materials` get outlines, with their names below.
+    `materials` get outlines, with their names below. `cut` is the plane that is shown.
     Raises InputError if the frame does not hold the field.
     """
     shown = frame.field(field)
     values = scalar_values(shown)
     spacing = point_spacing(frame.positions) if spacing is None else spacing
-    box = view_box([bounding_box(frame.positions, spacing)])
+    box = view_box([bounding_box(frame.positions, spacing, cut)])
     groups = materials.of_points(frame) if materials is not None else None
     with paper_picture(path, _height(box) + LEGEND_HEIGHT * (groups is not None), "compressed") as figure:
         axes = figure.subplots()
-        image = draw_points(axes, frame.positions, values, spacing, color_scale([values], limits), groups)
-        axes.set(xlabel="$x$ [m]", ylabel="$y$ [m]", xlim=box[:2], ylim=box[2:], title=time_label(frame.time))
+        image = draw_points(axes, frame.positions, values, spacing, color_scale([values], limits), groups, cut)
+        across, up = cut.labels
+        axes.set(xlabel=across, ylabel=up, xlim=box[:2], ylim=box[2:], title=time_label(frame.time))
         color_bar(figure, image, [axes], field_label(shown))
         if materials is not None and groups is not None:
             name_outlines(figure, materials.legend())
@@ -81,11 +85,13 @@ def draw_history(runs: Sequence[tuple[str, RunFolder]], path: Path) -> None:
         runout.legend(fontsize="small", frameon=False)
         shown = "height of top (full) and\ncentre of mass (dashed)"
         heights.set(xlabel="$t$ [s]", ylabel=quantity_label(shown, _UNITS["height"]))
-        panels = below.subplots(1, len(runs), sharey=True, squeeze=False)[0]
-        for axes, (label, run) in zip(panels, runs, strict=True):
+        units = [energy_unit(run.space) for _, run in runs]
+        panels = below.subplots(1, len(runs), sharey=len(set(units)) == 1, squeeze=False)[0]
+        for axes, (label, run), unit in zip(panels, runs, units, strict=True):
             _draw_energies(axes, run)
             axes.set_title(label)
-        panels[0].set_ylabel(quantity_label("energy since the start", _UNITS["kinetic_energy"]))
+            if axes is panels[0] or len(set(units)) > 1:
+                axes.set_ylabel(quantity_label("energy since the start", unit))
         below.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
 
 
@@ -100,7 +106,11 @@ def write_run_pictures(folder: Path) -> list[Path]:
     field = run.scene.get("output", {}).get("picture_field") or _usual_field(last)
     limits = USUAL_LIMITS if field == USUAL_FIELD else None
     written = [folder / "final.png", folder / "history.png"]
-    draw_frame(last, field, written[0], limits, point_spacing(run.load_frame(0).positions), materials_of(run))
+    spacing, cuts = point_spacing(run.load_frame(0).positions), cuts_of(run)
+    if run.space.axes == 3:
+        draw_solid_frame(last, field, written[0], cuts, domain_of(run), limits, spacing, materials_of(run))
+    else:
+        draw_frame(last, field, written[0], limits, spacing, materials_of(run), cuts[0])
     draw_history([(folder.name, run)], written[1])
     runout = run.history["runout"]
     if runout.max() > _SPREADING * runout[0]:
@@ -114,7 +124,7 @@ def _usual_field(frame: Frame) -> str:
     return held[0] if held and USUAL_FIELD not in held else USUAL_FIELD
 
 
-def _height(box: tuple[float, float, float, float]) -> float:
+def _height(box: Box) -> float:
     """Height of the figure [inch] in which equal axes fill the width, within what a page can hold."""
     left, right, bottom, top = box
     return min(max(0.85 * PAPER_WIDTH * (top - bottom) / (right - left) + 0.8, 1.8), PAPER_WIDTH)

@@ -6,7 +6,7 @@ from grainlaw.mpm_core.output.checkpoint import Clock, write_checkpoint
 from grainlaw.mpm_core.output.fields import make_frame
 from grainlaw.mpm_core.output.frame_series import FrameSeries
 from grainlaw.mpm_core.output.history import HistoryWriter, read_history
-from grainlaw.mpm_core.output.observables import PileShape, interior_overfill, pile_shape
+from grainlaw.mpm_core.output.observables import PileShape, interior_overfill, measure_of, pile_shape
 from grainlaw.mpm_core.output.quantities import write_quantities
 from grainlaw.mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame
 from grainlaw.mpm_core.scene.model import Scene
@@ -35,10 +35,11 @@ class Recorder:
         self.clock = clock
         self.frame_interval = frame_interval(simulation.scene)
         self.history_interval = history_interval(simulation.scene)
+        self.measure = measure_of(simulation.scene)
         self.series = FrameSeries(folder) if simulation.scene.output.vtu else None
         self.history = HistoryWriter(folder)
         frame = make_frame(simulation.time, simulation.steps, simulation.bodies, simulation.fields)
-        write_quantities(folder, frame.fields)
+        write_quantities(folder, frame.fields, simulation.space)
 
     def next_frame_time(self) -> float:
         """When the next frame is due [s]: at whole multiples of the interval and at the end."""
@@ -48,8 +49,7 @@ class Recorder:
 
     def shape(self) -> PileShape:
         """The present shape of the material."""
-        simulation = self.simulation
-        return pile_shape(simulation.bodies, simulation.grid.lower[simulation.space.up], simulation.grid.cell_size)
+        return pile_shape(self.simulation.bodies, self.measure)
 
     def record(self, wall_time: float) -> None:
         """Write whatever is due after a step."""

@@ -16,6 +16,7 @@ from grainlaw.mpm_core.output.history import read_history
 from grainlaw.mpm_core.output.quantities import read_field_documentation
 from grainlaw.mpm_core.output.summary import RunSummary, read_summary
 from grainlaw.mpm_core.output.vtu import read_vtu
+from grainlaw.mpm_core.space import PLANE_STRAIN, SPACES, Space
 
 SCENE_NAME = "scene.toml"
 # Columns of the history that every picture of a run needs.
@@ -45,6 +46,11 @@ class RunFolder:
             return tomllib.loads(path.read_text(encoding="utf-8"))
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
             raise InputError(f"{path} cannot be read: {error}") from error
+
+    @property
+    def space(self) -> Space:
+        """The space of the scene that was run."""
+        return SPACES.get(str(self.scene.get("space")), PLANE_STRAIN)
 
     @cached_property
     def frame_files(self) -> tuple[FrameFile, ...]:

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from grainlaw.materials import InputError
+from grainlaw.mpm_core.output.cut import Cut, cuts_of
 from grainlaw.mpm_core.output.frame import Frame
 from grainlaw.mpm_core.output.materials_of_points import Materials, materials_of
 from grainlaw.mpm_core.output.picture_style import (
@@ -25,7 +26,7 @@ from grainlaw.mpm_core.output.picture_style import (
     scalar_values,
     time_label,
 )
-from grainlaw.mpm_core.output.point_image import ColorScale, bounding_box, draw_points, point_spacing, view_box
+from grainlaw.mpm_core.output.point_image import Box, ColorScale, bounding_box, draw_points, point_spacing, view_box
 from grainlaw.mpm_core.output.run_folder import RunFolder
 
 NORMALIZED_RUNOUTS = (0.1, 0.5, 1.0)
@@ -33,12 +34,18 @@ NORMALIZED_RUNOUTS = (0.1, 0.5, 1.0)
 
 @dataclass(frozen=True)
 class _Snapshot:
-    """A frame, its normalised runout, the spacing [m] of the points in the run's first frame, and their materials."""
+    """A frame, its normalised runout, the first frame's spacing of points [m], their materials, and what is shown."""
 
     frame: Frame
     normalized_runout: float
     spacing: float
     groups: NDArray[np.int64] | None
+    cut: Cut
+
+    @property
+    def box(self) -> Box:
+        """The bounding box of what is shown [m]."""
+        return bounding_box(self.frame.positions, self.spacing, self.cut)
 
 
 def normalized_runout(run: RunFolder, times: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -61,6 +68,8 @@ def draw_snapshots(
 ) -> None:
     """Write the picture: a row for each (label, run), the frames nearest to w_bar = 0.1, 0.5 and 1.0.
 
+    Of a run in 3D they show the cut through the middle along x, or along y where the bodies cannot spread along x.
+
     Raises InputError if a run lacks frames, history or the field, or if its runout never grew.
     """
     of_runs = [materials_of(run) for _, run in runs]
@@ -71,20 +80,21 @@ def draw_snapshots(
     all_snapshots = [snapshot for _, row in rows for snapshot in row]
     fields = [snapshot.frame.field(field) for snapshot in all_snapshots]
     scale = color_scale([scalar_values(one) for one in fields], limits)
-    box = view_box([bounding_box(one.frame.positions, one.spacing) for one in all_snapshots])
+    box = view_box([one.box for one in all_snapshots])
     is_outlined = any(one.groups is not None for one in all_snapshots)
     with paper_picture(path, _height(len(rows), box) + LEGEND_HEIGHT * is_outlined, "compressed") as figure:
         grid = figure.subplots(len(rows), len(NORMALIZED_RUNOUTS), sharex=True, sharey=True, squeeze=False)
         for axes_row, (label, row) in zip(grid, rows, strict=True):
             for axes, snapshot in zip(axes_row, row, strict=True):
                 _draw_snapshot(axes, snapshot, field, scale)
-            axes_row[0].set_title(label, loc="left")
-            axes_row[0].set_ylabel("$y$ [m]")
+            cut = row[0].cut
+            axes_row[0].set_title(f"{label}, {cut.name}" if cut.name else label, loc="left")
+            axes_row[0].set_ylabel(cut.labels[1])
         for axes, target in zip(grid[0], NORMALIZED_RUNOUTS, strict=True):
             # The empty line is that of the row's label.
             axes.set_title(rf"$\bar{{w}} \approx {target:.1f}$" + "\n ")
         for axes in grid[-1]:
-            axes.set_xlabel("$x$ [m]")
+            axes.set_xlabel(rows[-1][1][0].cut.labels[0])
         grid[0, 0].set(xlim=box[:2], ylim=box[2:])
         color_bar(figure, grid[0, 0].images[0], list(grid.flat), field_label(fields[0]))
         if is_outlined:
@@ -94,20 +104,21 @@ def draw_snapshots(
 def _snapshots(run: RunFolder, materials: Materials) -> list[_Snapshot]:
     """The frames of one run that come nearest to the three normalised runouts."""
     reached = normalized_runout(run, run.frame_times)
-    spacing = point_spacing(run.load_frame(0).positions)
+    spacing, cut = point_spacing(run.load_frame(0).positions), cuts_of(run)[0]
     chosen = [int(np.argmin(np.abs(reached - target))) for target in NORMALIZED_RUNOUTS]
     frames = [(run.load_frame(index), float(reached[index])) for index in chosen]
-    return [_Snapshot(frame, share, spacing, materials.of_points(frame)) for frame, share in frames]
+    return [_Snapshot(frame, share, spacing, materials.of_points(frame), cut) for frame, share in frames]
 
 
 def _draw_snapshot(axes: Axes, snapshot: _Snapshot, field: str, scale: ColorScale) -> None:
     frame = snapshot.frame
-    draw_points(axes, frame.positions, scalar_values(frame.field(field)), snapshot.spacing, scale, snapshot.groups)
+    values = scalar_values(frame.field(field))
+    draw_points(axes, frame.positions, values, snapshot.spacing, scale, snapshot.groups, snapshot.cut)
     note = rf"$\bar{{w}} = {snapshot.normalized_runout:.2f}$" + "\n" + time_label(frame.time)
     axes.text(0.97, 0.94, note, transform=axes.transAxes, ha="right", va="top", fontsize="small")
 
 
-def _height(rows: int, box: tuple[float, float, float, float]) -> float:
+def _height(rows: int, box: Box) -> float:
     """Height of the figure [inch] in which each row is as high as its equal axes need."""
     axes_width = PAPER_WIDTH / (len(NORMALIZED_RUNOUTS) + 0.8)
     axes_height = axes_width * (box[3] - box[2]) / (box[1] - box[0])

@@ -11,7 +11,10 @@ SUMMARY_NAME = "summary.json"
 
 
 class FinalState(BaseModel):
-    """Runout [m], height [m], height of the centre of mass [m] and kinetic energy [J/m] at the end of the run."""
+    """Runout [m], height [m], height of the centre of mass [m] and kinetic energy at the end of the run.
+
+    As in the history, energies are per width [J/m], per radian [J/rad] or of the whole [J], as the space has it.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 

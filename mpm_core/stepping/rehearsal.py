@@ -1,10 +1,10 @@
 """A scene on coarse grids, played through before the run: how fast its signals become, and what its points cost.
 
 The number of steps follows from the signal speed over time, which nobody knows beforehand: Cam Clay stiffens under
-impact, everything falls. With cells f times as large a run costs 1/f^3 and shows most of it. Finer grids resolve higher
-peaks of the pressure, so that signals become faster by about the same amount with each halving of the cell; two coarse
-grids therefore say what to expect of a fine one. On fewer points than a thousand a column of Cam Clay may not fall at
-all, so small scenes are rehearsed as they are.
+impact, everything falls. With cells f times as large a run costs 1/f^3, in 3D 1/f^4, and shows most of it. Finer grids
+resolve higher peaks of the pressure, so that signals become faster by about the same amount with each halving of the
+cell; two coarse grids therefore say what to expect of a fine one. On fewer points than a thousand a column of Cam Clay
+may not fall at all, so small scenes are rehearsed as they are.
 """
 
 import math
@@ -105,14 +105,14 @@ def _factors(scene: Scene, points: int) -> list[int]:
     """The two largest factors that leave whole cells and enough points."""
     cells = scene.grid.cells
     periodic = [
-        axis for axis, side in enumerate(("left", "bottom")) if getattr(scene.boundary, side).kind == "periodic"
+        axis for axis, (side, _) in enumerate(scene.in_space.sides) if scene.boundary.kind_of(side) == "periodic"
     ]
     return [
         factor
         for factor in range(LARGEST_FACTOR, 1, -1)
         if all(count % factor == 0 for count in cells)
         and all(cells[axis] // factor >= FEWEST_PERIODIC_CELLS for axis in periodic)
-        and points >= FEWEST_POINTS * factor**2
+        and points >= FEWEST_POINTS * factor ** len(cells)
     ][:2]
 
 

@@ -4,6 +4,7 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from grainlaw.mpm_core.output.history import energy_unit
 from grainlaw.mpm_core.output.pictures import draw_history, write_run_pictures
 from grainlaw.mpm_core.output.run_folder import SCENE_NAME, RunFolder
 from grainlaw.validation.report.page import Picture, Section, Table
@@ -17,7 +18,7 @@ COLUMNS = (
     "runout [m]",
     "height [m]",
     "centre of mass [m]",
-    "kinetic [J/m]",
+    "kinetic energy",
     "energy balance",
     "wall [s]",
     "million point-steps/s",
@@ -45,7 +46,7 @@ def _row(name: str, run: RunFolder) -> tuple[str, ...]:
         f"{final.runout:.4f}",
         f"{final.height:.4f}",
         f"{final.center_of_mass_height:.4f}",
-        f"{final.kinetic_energy:.3g}",
+        f"{final.kinetic_energy:.3g} {energy_unit(run.space)}",
         f"{summary.energy_balance_error:.1e}",
         f"{summary.wall_time:.1f}",
         f"{summary.point_steps_per_second / 1e6:.2f}",

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from grainlaw.materials.registry import get_material
-from grainlaw.mpm_core.output.observables import PileShape, pile_shape
+from grainlaw.mpm_core.output.observables import PileShape, shape_of
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Effort, Measurement, relative_error
 from grainlaw.validation.scenes import shipped_simulation
@@ -44,7 +44,7 @@ def published_viscous() -> dict[str, Any]:
 
 def pile(simulation: Simulation) -> Pile:
     """The present pile."""
-    shape = pile_shape(simulation.bodies, simulation.grid.lower[1], simulation.grid.cell_size)
+    shape = shape_of(simulation)
     return Pile(simulation.time, shape, simulation.ledger.kinetic, -simulation.ledger.potential)
 
 

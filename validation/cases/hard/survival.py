@@ -10,7 +10,7 @@ import numpy as np
 
 from grainlaw.materials import SimulationError
 from grainlaw.mpm_core.output.bounded_points import limited
-from grainlaw.mpm_core.output.observables import PileShape, pile_shape
+from grainlaw.mpm_core.output.observables import PileShape, shape_of
 from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Measurement, upper_bound
 from grainlaw.validation.scenes import advance
@@ -64,7 +64,7 @@ def trial(
         missing=max(0.0, 1.0 - simulation.time / end),
         not_finite=sum(int((~np.isfinite(body.points)).any(axis=0).sum()) for body in simulation.bodies),
         created=max(created),
-        shape=pile_shape(simulation.bodies, simulation.grid.lower[1], simulation.grid.cell_size),
+        shape=shape_of(simulation),
         steps=simulation.steps,
         limited=limited(simulation),
         message=message,
