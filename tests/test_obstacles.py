@@ -327,3 +327,10 @@ def test_a_motion_file_counts_from_the_scene_file(tmp_path):
     scene = Scene.load(write_scene(tmp_path / "scene.toml", content))
     assert scene.obstacle[0].motion.displacement == [(0.0, 0.0), (0.2, 0.0)]
     assert scene.obstacle[0].motion.angle == [0.0, 0.5]
+
+
+def test_an_empty_motion_file_is_said_in_one_line(tmp_path):
+    (tmp_path / "motion.csv").write_text("")
+    content = changed(BOX, {"obstacle.0.motion": {"file": "motion.csv"}})
+    with pytest.raises(InputError, match=r"obstacle\.0\.motion: file .*motion\.csv cannot be read: .*Empty input file"):
+        Scene.load(write_scene(tmp_path / "scene.toml", content))

@@ -1,5 +1,6 @@
 """`[[obstacle]]`: rigid bodies that stand in the way, and how they move."""
 
+import warnings
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
@@ -58,8 +59,10 @@ class MotionSection(Section):
 
     def _read(self, file: Path) -> None:
         try:
-            table: Any = np.genfromtxt(file, delimiter=",", names=True, dtype=np.float64)
-        except (OSError, ValueError) as error:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                table: Any = np.genfromtxt(file, delimiter=",", names=True, dtype=np.float64, encoding="utf-8-sig")
+        except (OSError, ValueError, UserWarning) as error:
             raise ValueError(f"file {file} cannot be read: {error}") from error
         names = table.dtype.names or ()
         axes = [axis for axis in ("x", "y", "z") if axis in names]
