@@ -11,7 +11,7 @@ from grainlaw.validation.cases.exact.generalised_vortex import history, largest
 from grainlaw.validation.cases.exact.rigid_rotation import START, turned_stress
 from grainlaw.validation.cases.exact.sliding_block import exact_distance
 from grainlaw.validation.cases.point.cam_clay_solutions import EXAMPLE
-from grainlaw.validation.cases.spaces import driven_cylinder, pipe_flow, turned_block
+from grainlaw.validation.cases.spaces import driven_cylinder, pipe_flow, turned_block, vibrations
 
 
 def test_golden_states_of_the_worked_example():
@@ -69,6 +69,14 @@ def test_pipe_flow_starts_from_rest_and_ends_as_a_parabola():
     assert np.abs(pipe_flow.exact_velocity(radii, 0.0)).max() < 1e-2 * largest
     # of a short time, as of a body in free fall
     assert pipe_flow.exact_velocity(0.0, 0.05) == pytest.approx(pipe_flow.ACCELERATION * 0.05, rel=1e-3)
+
+
+def test_radial_mode_leaves_the_rim_without_stress():
+    k, shear = vibrations.exact_wave_number(), 1e5 * 3.0 * (1.0 - 0.6) / (2.0 * 1.3)
+    step = 1e-6
+    inner, rim, outer = vibrations.j1(k * np.array([1.0 - step, 1.0, 1.0 + step]))
+    stretch = (outer - inner) / (2.0 * step)
+    assert (1e5 + 4.0 / 3.0 * shear) * stretch + (1e5 - 2.0 / 3.0 * shear) * rim == pytest.approx(0.0, abs=1.0)
 
 
 def test_force_on_the_driven_cylinder_balances_its_stress_and_inertia():

@@ -42,6 +42,7 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "spaces.radial_expansion",
         "spaces.self_weight",
         "spaces.turned_block",
+        "spaces.vibrations",
         "spaces.oblique_slide",
         "spaces.driven_cylinder",
         "spaces.driven_cube",

@@ -7,8 +7,9 @@ import numpy as np
 
 from grainlaw.materials.rheology import longitudinal_wave_speed, shear_modulus
 from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.space import PLANE_STRAIN, Space
 from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, relative_error
-from grainlaw.validation.scenes import advance, in_order_of_generation, simulation_of
+from grainlaw.validation.scenes import advance, block, in_order_of_generation, simulation_of
 
 BAND = 5e-3
 LENGTH, DENSITY, BULK_MODULUS, POISSON_RATIO = 1.0, 1000.0, 1e5, 0.3
@@ -28,37 +29,41 @@ def exact_frequency() -> float:
     return wave_speed() / (4.0 * LENGTH)
 
 
-def scene(cells: int, poisson_ratio: float) -> dict[str, Any]:
-    """A bar of `cells` x 4 cells that fills the domain across and half of it along."""
-    size = LENGTH / cells
+def axis_of_bar(space: Space) -> int:
+    """Along x in plane strain, otherwise along the vertical axis."""
+    return 0 if space is PLANE_STRAIN else space.up
+
+
+def scene(cells: int, poisson_ratio: float, space: Space) -> dict[str, Any]:
+    """A bar, `cells` long and 4 cells thick, that fills the domain across and half of it along."""
+    size, axis = LENGTH / cells, axis_of_bar(space)
+    bar, domain = [4.0 * size] * space.axes, [4.0 * size] * space.axes
+    bar[axis], domain[axis] = LENGTH, 2.0 * LENGTH
     return {
-        "gravity": [0.0, 0.0],
-        "grid": {"cell_size": size, "upper": [2.0 * LENGTH, 4.0 * size]},
+        "space": space.name,
+        "gravity": [0.0] * space.axes,
+        "grid": {"cell_size": size, "upper": domain},
         "time": {"end": PERIODS / exact_frequency()},
         "transfer": {"time_constant": 1e6},
         "material": {"linear_elastic": {"bulk_modulus": BULK_MODULUS, "poisson_ratio": poisson_ratio}},
-        "body": [
-            {
-                "material": "linear_elastic",
-                "shape": {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [LENGTH, 4.0 * size]},
-                "density": DENSITY,
-            }
-        ],
+        "body": [{"material": "linear_elastic", "shape": block([0.0] * space.axes, bar), "density": DENSITY}],
     }
 
 
-def vibration(cells: int, poisson_ratio: float = POISSON_RATIO) -> tuple[np.ndarray, np.ndarray]:
+def vibration(
+    cells: int, poisson_ratio: float = POISSON_RATIO, space: Space = PLANE_STRAIN
+) -> tuple[np.ndarray, np.ndarray]:
     """Amplitude of the first mode's velocity over time, 40 values in a period [s, m/s]."""
-    content = scene(cells, poisson_ratio)
+    content, axis = scene(cells, poisson_ratio, space), axis_of_bar(space)
     simulation = simulation_of(content)
     body = simulation.bodies[0]
-    mode = np.sin(0.5 * math.pi * in_order_of_generation(body, body.positions[0]) / LENGTH)
-    body.velocity[0] = STRAIN * wave_speed() * np.sin(0.5 * math.pi * body.positions[0] / LENGTH)
+    mode = np.sin(0.5 * math.pi * in_order_of_generation(body, body.positions[axis]) / LENGTH)
+    body.velocity[axis] = STRAIN * wave_speed() * np.sin(0.5 * math.pi * body.positions[axis] / LENGTH)
     times, amplitudes = [0.0], [STRAIN * wave_speed()]
 
     def observe(present: Simulation) -> None:
         times.append(present.time)
-        amplitudes.append(2.0 * float(np.mean(mode * in_order_of_generation(body, body.velocity[0]))))
+        amplitudes.append(2.0 * float(np.mean(mode * in_order_of_generation(body, body.velocity[axis]))))
 
     advance(simulation, content["time"]["end"], observe, intervals=40 * PERIODS)
     return np.array(times), np.array(amplitudes)
@@ -72,10 +77,12 @@ def frequency(times: np.ndarray, amplitudes: np.ndarray) -> float:
     return 0.5 * (len(passages) - 1) / float(passages[-1] - passages[0])
 
 
-def measured(cells: int, poisson_ratio: float = POISSON_RATIO) -> Measurement:
+def measured(
+    cells: int, poisson_ratio: float = POISSON_RATIO, space: Space = PLANE_STRAIN, label: str = ""
+) -> Measurement:
     """The frequency on one grid."""
-    found = frequency(*vibration(cells, poisson_ratio))
-    return relative_error(f"frequency, {cells} cells", "1/s", found, exact_frequency(), BAND)
+    found = frequency(*vibration(cells, poisson_ratio, space))
+    return relative_error(f"frequency, {cells} cells{label}", "1/s", found, exact_frequency(), BAND)
 
 
 def measure(effort: Effort) -> Evidence:
