@@ -246,7 +246,7 @@ class Body:
             for point in np.unique(block, axis=0).tolist():
                 stress, density, state = tensor_of(point[:components]), point[components], point[components + 1 :]
                 fastest = max(fastest, self.law.sound_speed(stress, density, self.law.state(*state), self.parameters))
-        return fastest + float(self.speed.max())
+        return fastest + float(self.speed.max(initial=0.0))
 
     def sort(self, grid: Grid, basis: Basis) -> None:
         """Bring the points that are awake into the order of their stencils and cut them into stripes."""
@@ -254,6 +254,23 @@ class Body:
             self.points_awake[: self.space.axes], grid.origin, grid.cell_size, basis
         )
         reorder(self.storage, self.ids, 0, order)
+
+    def remove(self, gone: NDArray[np.bool_]) -> None:
+        """Remove points for good, of all; the rest keep their order.
+
+        Where others sleep, a few of them may wake (`divide`).
+        """
+        kept = np.flatnonzero(~gone)
+        awake = int(np.searchsorted(kept, self.awake))
+        values, self.ids = self.points[:, kept], self.ids[kept]
+        self.points[:] = 0.0
+        self.set_count(len(kept))
+        self.points[:] = values
+        self.set_awake(min(len(kept), -(-awake // MOST_AT_ONCE) * MOST_AT_ONCE))
+
+    def set_count(self, count: int) -> None:
+        """Keep only the first points."""
+        self.points = self.storage[:, :count]
 
     def divide(self, asleep: NDArray[np.bool_]) -> None:
         """Put the points that are to sleep, of all, behind the others; the speed of those that fall asleep is zero.

@@ -45,7 +45,9 @@ def failure_too_small(
 ) -> SimulationError:
     """The error of a run whose step [s] would fall below the smallest, naming the point that asks for it."""
     reason = strain_rates if is_by_strain else signal_speeds
-    body = max(bodies, key=lambda found: float(reason(found).max()))
-    point, words = what_sets_the_step(body, reason)
     asked = f"the step would have to shrink to {step:.3g} s, below the smallest one, {smallest:.3g} s"
+    body = max(bodies, key=lambda found: float(reason(found).max(initial=0.0)))
+    if body.count == 0:
+        return SimulationError(f"{when}: {asked} (time.smallest_step)")
+    point, words = what_sets_the_step(body, reason)
     return failure_at(when, body, point, f"{asked} (time.smallest_step): {words}")

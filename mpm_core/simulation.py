@@ -25,6 +25,7 @@ from grainlaw.mpm_core.kernels.walls import Wall, WallKind, active_layers, hold_
 from grainlaw.mpm_core.ledger import Ledger
 from grainlaw.mpm_core.obstacles.free_room import FreeRoom
 from grainlaw.mpm_core.obstacles.obstacles import Obstacles
+from grainlaw.mpm_core.open_sides import let_leave
 from grainlaw.mpm_core.output.fields import chosen_fields
 from grainlaw.mpm_core.parallel.sorting import LONGEST_DRIFT
 from grainlaw.mpm_core.parallel.threads import use_threads
@@ -61,7 +62,7 @@ class Simulation:
         self.periodic_axes = _periodic_axes(scene)
         self.space = scene.in_space
         size = (scene.grid.lower, scene.grid.cells, scene.grid.cell_size)
-        self.grid = Grid(self.space, *size, self.periodic_axes, scene.precision)
+        self.grid = Grid(self.space, *size, self.periodic_axes, scene.precision, _open_sides(scene))
         self.fields = chosen_fields(scene)
         self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
         signals = self._signals_of_points()
@@ -71,6 +72,7 @@ class Simulation:
             body.choose_kernels(self.basis)
         initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
+        self.initial_points = sum(body.count for body in self.bodies)
         self.walls = _walls(scene)
         self.obstacles = Obstacles(build_obstacles(scene), FreeRoom(self.grid, self.periodic_axes))
         check_start(scene, self.obstacles.all, self.bodies)
@@ -109,12 +111,12 @@ class Simulation:
         signals = []
         for body in self.bodies:
             with numbers_of(body.law.name):
-                signals.append((body.largest_signal_speed(), float(body.speed.max())))
+                signals.append((body.largest_signal_speed(), float(body.speed.max(initial=0.0))))
         return signals
 
     def _take_signals(self, signals: list[tuple[float, float]]) -> None:
         self.signal_speed = self._signal_speed(signals, [largest_diffusivity(body) for body in self.bodies])
-        self.strain_rate = max(float(strain_rates(body).max()) for body in self.bodies)
+        self.strain_rate = max(float(strain_rates(body).max(initial=0.0)) for body in self.bodies)
 
     def step(self, dt: float) -> None:
         """Advance by dt [s]. Raises SimulationError naming the point where the result cannot be right.
@@ -264,6 +266,8 @@ class Simulation:
         """Let points leave each cell the room it has, when the fastest has drifted far enough since that was done."""
         if self.projects_volumes and self.drift_unprojected > LONGEST_UNPROJECTED * self.grid.cell_size:
             self._wrap()
+            if self._let_leave():
+                self._sort()
             gaps, room_of = self.wall_clearance.gaps(), self.obstacles.room_of
             projected = project_volumes(self.bodies, self.grid, self.periodic_axes, self.scene.gravity, gaps, room_of)
             self.ledger.count_projection(projected.raised)
@@ -278,10 +282,20 @@ class Simulation:
 
     def _sort(self) -> None:
         self._wrap()
+        self._let_leave()
         for body in self.bodies:
             body.sort(self.grid, self.basis)
         self.drift = 0.0
         self.find_active_nodes()
+
+    def _let_leave(self) -> bool:
+        """Remove what has gone through open sides; returns whether anything has. What is left has to be sorted."""
+        left = let_leave(self.bodies, self.grid, self.basis, self.scene.gravity, self.last_step)
+        if left is not None:
+            self.ledger.count_outflow(left)
+            if self.sleep is not None:
+                self.sleep.bring_sleepers()
+        return left is not None
 
     def _sleep(self) -> Sleep | None:
         settings = self.scene.sleep
@@ -340,9 +354,11 @@ class Simulation:
 
     def _refuse_lost_points(self, report: StepReport) -> None:
         for axis, (lowest, highest) in enumerate(zip(report.lowest, report.highest, strict=True)):
-            is_lost = lowest < self.grid.lower[axis] or highest > self.grid.upper[axis]
-            if is_lost and axis not in self.periodic_axes:
-                raise failure_outside(self._when, self.bodies, axis, self.grid.lower[axis], self.grid.upper[axis])
+            below, above = self.grid.open_sides[axis]
+            lower = -math.inf if below else self.grid.lower[axis]
+            upper = math.inf if above else self.grid.upper[axis]
+            if (lowest < lower or highest > upper) and axis not in self.periodic_axes:
+                raise failure_outside(self._when, self.bodies, axis, lower, upper)
 
 
 def _walls(scene: Scene) -> list[Wall]:
@@ -350,10 +366,15 @@ def _walls(scene: Scene) -> list[Wall]:
     for axis, sides in enumerate(scene.in_space.sides):
         for side in sides:
             section = scene.boundary.of(side)
-            if section.kind != "periodic":
+            if section.kind not in ("periodic", "open"):
                 kind, is_lower = WallKind[section.kind.upper()], side == sides[0]
                 walls.append(Wall(axis, is_lower, kind, section.coefficient, scene.wall_velocity(side)))
     return walls
+
+
+def _open_sides(scene: Scene) -> list[tuple[bool, bool]]:
+    kinds = ([scene.boundary.kind_of(side) for side in pair] for pair in scene.in_space.sides)
+    return [(below == "open", above == "open") for below, above in kinds]
 
 
 def _periodic_axes(scene: Scene) -> list[int]:

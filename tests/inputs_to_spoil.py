@@ -163,6 +163,8 @@ SUMMARY = RunSummary(
     **dict.fromkeys(("scene", "material", "version"), "a"),
     **dict.fromkeys(("points", "cells", "steps", "peak_memory_bytes", "threads"), 1),
     **dict.fromkeys(("simulated_time", "wall_time", "compile_time", "point_steps_per_second"), 1.0),
+    mass_left=0.0,
+    points_left=0,
     final=FinalState(runout=0.1, height=0.1, center_of_mass_height=0.05, kinetic_energy=0.0),
     energy_balance_error=0.01,
     limited={"points_at_a_wall": 1},

@@ -8,7 +8,8 @@ from pydantic import ValidationError
 from synthetic_run import FRAMES, frame, history_row, write_run
 
 from grainlaw.materials import InputError
-from grainlaw.mpm_core.output.history import HistoryWriter, history_columns, keep_rows, read_history
+from grainlaw.mpm_core.output.history import HistoryWriter, history_columns, read_history
+from grainlaw.mpm_core.output.rows import keep_rows
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.output.summary import RunSummary, read_summary, write_summary
 
@@ -60,7 +61,7 @@ def test_a_row_cut_off_by_a_crash_is_left_out_and_dropped_on_resume(tmp_path):
     with (tmp_path / "history.csv").open("a") as file:
         file.write("0.01,0.0")
     assert len(read_history(tmp_path)) == 10
-    keep_rows(tmp_path, 7)
+    keep_rows(tmp_path / "history.csv", 7)
     write_history(tmp_path, [7])
     assert read_history(tmp_path)["step"].tolist() == list(range(8))
 

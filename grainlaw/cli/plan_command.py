@@ -48,6 +48,9 @@ def plan(
         "fields of a frame": ", ".join(planned.fields),
         "saved": "; ".join(planned.savings),
     }
+    if scene.obstacle:
+        near = counted(planned.near_obstacles, "point")
+        rows["obstacles"] = f"{near} near {len(scene.obstacle)}, {planned.obstacle_share:.0%} of a step"
     for name, value in rows.items():
         table.add_row(name, value)
     Console(width=110, markup=False).print(table)

@@ -33,7 +33,6 @@ def run(
     scene = load_scene(scene_file, set_values)
     folder = out or Path("runs") / scene_file.stem
 
-    from grainlaw.mpm_core.output.history import energy_unit
     from grainlaw.mpm_core.parallel.threads import usable_threads
     from grainlaw.mpm_core.stepping.run import run as run_scene
     from grainlaw.progress import shown_progress
@@ -51,10 +50,15 @@ def run(
     except KeyboardInterrupt as interrupt:
         notes = getattr(interrupt, "__notes__", ["stopped by Ctrl-C before the first step; nothing was written"])
         raise SimulationError(notes[-1]) from interrupt
-    _print_result(folder, summary, energy_unit(scene.in_space))
+    _print_result(folder, summary, scene.in_space.amount)
 
 
-def _print_result(folder: Path, summary: "RunSummary", unit: str) -> None:
+def in_metres(length: float | None) -> str:
+    """A length with its unit, or that there is none."""
+    return "none" if length is None else f"{length:.4f} m"
+
+
+def _print_result(folder: Path, summary: "RunSummary", amount: str) -> None:
     final, waited = summary.final, f"{summary.compile_time:.1f} s to compile or load kernels"
     typer.echo(
         f"{summary.scene or folder.name}: t = {summary.simulated_time:g} s, {counted(summary.points, 'point')}, "
@@ -63,8 +67,14 @@ def _print_result(folder: Path, summary: "RunSummary", unit: str) -> None:
     )
     typer.echo(
         f"runout {final.runout:.4f} m, height {final.height:.4f} m, "
-        f"centre of mass {final.center_of_mass_height:.4f} m, kinetic energy {final.kinetic_energy:.3g} {unit}"
+        f"centre of mass {in_metres(final.center_of_mass_height)}, kinetic energy {final.kinetic_energy:.3g} J{amount}"
     )
+    if summary.points_left > 0:
+        all_of_it = ": nothing is left" if summary.points_left == summary.points else ""
+        typer.echo(
+            f"{summary.mass_left:.4g} kg{amount} left through open sides, {summary.points_left} of "
+            f"{counted(summary.points, 'point')}{all_of_it}"
+        )
     counts = ", ".join(
         f"{count} {name.removeprefix('points_').replace('_', ' ')}" for name, count in summary.limited.items()
     )

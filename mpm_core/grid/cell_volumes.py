@@ -24,6 +24,8 @@ FULL = 0.5
 SOLID = 0.1
 # Cells from the air within which a free surface lies: there a cell may be less than full without anything missing.
 SURFACE_CELLS = 2
+# By how much, in cells, a point may seem to lie beyond a side by round-off.
+ROUND_OFF = 1e-6
 # Cells of air around what points can reach, so that a free surface never lies at the edge of a window.
 MARGIN = 2
 
@@ -34,12 +36,14 @@ class CellWindow(NamedTuple):
     first     the number, along each axis, of the cell in the first layer of padding
     shape     cells along each axis, padding included
     at_walls  along each axis, whether the padding lies beyond the lower and the upper wall of the domain
+    at_open   the same for open sides
     periodic  axes along which the window is the whole domain and closed
     """
 
     first: tuple[int, ...]
     shape: tuple[int, ...]
     at_walls: tuple[tuple[bool, bool], ...]
+    at_open: tuple[tuple[bool, bool], ...]
     periodic: tuple[int, ...]
 
 
@@ -111,6 +115,10 @@ class CellVolumes(NamedTuple):
             inside = np.asarray(sliding_window_view(continued, 2 * SURFACE_CELLS + 1, axis=axis).all(axis=-1))
         for gap in self.gaps:
             self._open(gap, inside)
+        for axis, (below, above) in enumerate(self.window.at_open):
+            layers = np.moveaxis(inside, axis, 0)
+            layers[: SURFACE_CELLS * below] = False
+            layers[len(layers) - min(SURFACE_CELLS * above, len(layers)) :] = False
         return np.pad(inside, 1) & self.is_material
 
     def _open(self, gap: WallGap, inside: NDArray[np.bool_]) -> None:
@@ -125,19 +133,23 @@ class CellVolumes(NamedTuple):
 
 
 def find_window(bodies: Sequence[Body], grid: Grid, periodic_axes: Sequence[int]) -> CellWindow:
-    """The window around all points, with a margin of air where there is room for it."""
-    first, last, at_walls = [], [], []
+    """The window around all points, with a margin of air where there is room for it; somewhere, without points."""
+    first, last, at_walls, at_open = [], [], [], []
     for axis, cells in enumerate(grid.cells):
-        ends = [coordinate_of(body.points, axis, body.space) for body in bodies]
-        lowest = int((min(float(end.min()) for end in ends) - grid.lower[axis]) / grid.cell_size) - MARGIN
-        highest = int((max(float(end.max()) for end in ends) - grid.lower[axis]) / grid.cell_size) + MARGIN
+        ends = [coordinate_of(body.points, axis, body.space) for body in bodies if body.count > 0]
+        low_end = min((float(end.min()) for end in ends), default=grid.lower[axis])
+        high_end = max((float(end.max()) for end in ends), default=grid.lower[axis])
+        lowest = int((low_end - grid.lower[axis]) / grid.cell_size) - MARGIN
+        highest = int((high_end - grid.lower[axis]) / grid.cell_size) + MARGIN
         closed = axis in periodic_axes
         low, high = (0, cells - 1) if closed else (max(lowest, 0), min(highest, cells - 1))
         first.append(low - 1)
         last.append(high + 1)
-        at_walls.append((low == 0 and not closed, high == cells - 1 and not closed))
+        at_end, is_open = (low == 0 and not closed, high == cells - 1 and not closed), grid.open_sides[axis]
+        at_walls.append((at_end[0] and not is_open[0], at_end[1] and not is_open[1]))
+        at_open.append((at_end[0] and is_open[0], at_end[1] and is_open[1]))
     shape = tuple(end - start + 1 for start, end in zip(first, last, strict=True))
-    return CellWindow(tuple(first), shape, tuple(at_walls), tuple(periodic_axes))
+    return CellWindow(tuple(first), shape, tuple(at_walls), tuple(at_open), tuple(periodic_axes))
 
 
 def cell_volumes(
@@ -149,8 +161,8 @@ def cell_volumes(
 ) -> CellVolumes:
     """Deposit the volumes of all points to the middles of cells, with quadratic weights, mirrored at walls.
 
-    In axisymmetry a point stands for its area, volume over radius, in a cell whose size is its area. `room_of` tells
-    what obstacles leave of a window.
+    Points beyond an open side count for nothing. In axisymmetry a point stands for its area, volume over radius, in a
+    cell whose size is its area. `room_of` tells what obstacles leave of a window.
     """
     window = find_window(bodies, grid, periodic_axes)
     fill, held = np.zeros(window.shape), np.zeros(window.shape)
@@ -171,12 +183,18 @@ def corner(window: CellWindow, grid: Grid) -> tuple[float, ...]:
 
 
 def fold_padding(values: NDArray[np.float64], window: CellWindow) -> None:
-    """Give what lies in the padding to the cells it belongs to: beyond a wall its mirror image, or the other end."""
+    """Give what lies in the padding to the cells it belongs to: beyond a wall its mirror image, or the other end.
+
+    Beyond an open side it belongs to none.
+    """
     for axis in range(values.ndim):
         layers = np.moveaxis(values, axis, 0)
         lower, upper = (-2, 1) if axis in window.periodic else (1, -2)
-        layers[lower] += layers[0]
-        layers[upper] += layers[-1]
+        below, above = window.at_open[axis]
+        if not below:
+            layers[lower] += layers[0]
+        if not above:
+            layers[upper] += layers[-1]
         layers[0] = layers[-1] = 0.0
 
 
@@ -219,7 +237,10 @@ def _make_deposit(space: Space, precision: str) -> Callable[..., Any]:
 
 
 def _make_cell_and_weights(along: Callable[..., Any], mark: str) -> Callable[..., Any]:
-    """A function that gives the cell that a point is in along an axis, and its weights there and in both neighbours."""
+    """A function that gives the cell that a point is in along an axis, and its weights there and in both neighbours.
+
+    The cell of a point beyond an open side is -1.
+    """
 
     @register_jitable(forceinline=True)
     @named(mark)
@@ -227,6 +248,8 @@ def _make_cell_and_weights(along: Callable[..., Any], mark: str) -> Callable[...
         coordinate = (along(storage, axis, p) - lower[axis]) * inverse
         # A point on the upper wall belongs to the last cell.
         cell = min(int(coordinate), cells[axis] - 2)
+        if not 1.0 - ROUND_OFF <= coordinate <= cells[axis] - 1.0 + ROUND_OFF:
+            cell = -1
         # From the middle of the cell before.
         return cell, quadratic_weights(coordinate - cell + 0.5)
 
@@ -239,6 +262,8 @@ def _make_add_to_squares(cell_and_weights: Callable[..., Any], mark: str) -> Cal
     def add_to_squares(storage, p, volume, lower, inverse, fill):  # type: ignore[no-untyped-def]
         i, wx = cell_and_weights(storage, 0, p, lower, inverse, fill.shape)
         j, wy = cell_and_weights(storage, 1, p, lower, inverse, fill.shape)
+        if min(i, j) < 0:
+            return
         for a in range(3):
             for b in range(3):
                 fill[i + a - 1, j + b - 1] += volume * wx[a] * wy[b]
@@ -253,6 +278,8 @@ def _make_add_to_cubes(cell_and_weights: Callable[..., Any], mark: str) -> Calla
         i, wx = cell_and_weights(storage, 0, p, lower, inverse, fill.shape)
         j, wy = cell_and_weights(storage, 1, p, lower, inverse, fill.shape)
         k, wz = cell_and_weights(storage, 2, p, lower, inverse, fill.shape)
+        if min(i, j, k) < 0:
+            return
         for a in range(3):
             for b in range(3):
                 share = volume * wx[a] * wy[b]

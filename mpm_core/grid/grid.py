@@ -44,14 +44,15 @@ BULK_COMPONENTS = 2
 
 # Nodes beyond each side of the domain, enough for the widest stencil of a point that touches a wall.
 GHOSTS = 2
-# Ghosts that no stencil reaches, for axes without walls.
+# Ghosts that no stencil reaches, for sides without a wall.
 NO_GHOSTS = (-1, 2**31 - 1)
 
 
 class Grid:
     """A box of `cells` square or cubic cells of `cell_size` [m] whose lower corner is `lower` [m].
 
-    `precision` is one of `PRECISIONS`.
+    `precision` is one of `PRECISIONS`. `open_sides` says along each axis whether the lower and the upper side are open;
+    without it none is.
     Memory is reserved for the whole domain but, being zero until written, occupied only where material has been.
     """
 
@@ -63,6 +64,7 @@ class Grid:
         cell_size: float,
         periodic_axes: Sequence[int] = (),
         precision: str = "double",
+        open_sides: Sequence[tuple[bool, bool]] = (),
     ) -> None:
         self.space = space
         self.lower = tuple(lower)
@@ -71,11 +73,12 @@ class Grid:
         self.upper = tuple(low + count * cell_size for low, count in zip(lower, cells, strict=True))
         self.shape = tuple(count + 1 + 2 * GHOSTS for count in cells)
         self.precision = precision
+        self.open_sides = tuple(open_sides) or ((False, False),) * space.axes
         self.components = NODE_OF[space.axes]
         self.nodes = self.empty_nodes()
         self.bulk = self.empty_bulk()
-        # Of each axis the nodes just beyond its walls, whose velocity is tied to the inside; no node where it is
-        # periodic. All in one tuple: compiled passes take no tuples of tuples.
+        # Of each axis the nodes just beyond its walls, whose velocity is tied to the inside; no node where a side is
+        # periodic or open. All in one tuple: compiled passes take no tuples of tuples.
         self.ghosts = tuple(ghost for axis in range(space.axes) for ghost in self._ghosts(axis, periodic_axes))
         self.origin = tuple(low - GHOSTS * cell_size for low in self.lower)
 
@@ -89,7 +92,10 @@ class Grid:
         return _aligned_zeros(nodes * BULK_COMPONENTS, PRECISIONS[self.precision])
 
     def _ghosts(self, axis: int, periodic_axes: Sequence[int]) -> tuple[int, int]:
-        return NO_GHOSTS if axis in periodic_axes else (GHOSTS - 1, GHOSTS + self.cells[axis] + 1)
+        walls = GHOSTS - 1, GHOSTS + self.cells[axis] + 1
+        without = (True, True) if axis in periodic_axes else self.open_sides[axis]
+        low, high = (NO_GHOSTS[end] if without[end] else walls[end] for end in (0, 1))
+        return low, high
 
     @property
     def strides(self) -> tuple[int, ...]:

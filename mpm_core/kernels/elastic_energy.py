@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from grainlaw.materials.compilation import PointwiseLaw, explained, named, pointwise_law
 from grainlaw.mpm_core.body import Body
@@ -42,12 +43,15 @@ def _sum_over_points(space: Space, law: PointwiseLaw, precision: str) -> Callabl
     return sum_of_energies
 
 
-def elastic_energy(body: Body) -> float:
-    """The elastic energy of a body [J and the space's amount]; NaN if its law does not state its energy.
+def elastic_energy(body: Body, points: NDArray[np.float64] | None = None) -> float:
+    """The elastic energy of a body, or of some of its points [J and the space's amount].
+
+    `points` are like `Body.points`. NaN if the law does not state its energy.
 
     Raises InputError if the law's energy does not compile.
     """
     if body.law.stored_energy is None:
         return math.nan
     kernel = _sum_over_points(body.space, pointwise_law(body.law), body.precision)
-    return float(explained(body.law, kernel, body.storage, body.count, body.point_mass, tuple(body.parameters)))
+    storage, count = (body.storage, body.count) if points is None else (points, points.shape[1])
+    return float(explained(body.law, kernel, storage, count, body.point_mass, tuple(body.parameters)))

@@ -49,6 +49,11 @@ class Motion(ABC):
         self.center = pose.position if center is None else center
 
     @property
+    def moves(self) -> bool:
+        """Whether it is ever anywhere else."""
+        return True
+
+    @property
     def state(self) -> Floats:
         """All that changes, for a checkpoint, shape (21,)."""
         pose = self.pose
@@ -76,6 +81,11 @@ class Steady(Motion):
         super().__init__(pose, center)
         self.frame_velocity = velocity
         self.pose.spin = spin
+
+    @property
+    def moves(self) -> bool:
+        """Whether it has a velocity or a spin."""
+        return bool(self.frame_velocity.any() or self.pose.spin.any())
 
     def before(self, time: float, dt: float) -> None:
         """The frame moves with the centre, and around it, by half of the turn of the step."""

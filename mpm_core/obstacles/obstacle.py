@@ -47,6 +47,10 @@ class Forces:
         over = self.duration if self.duration > 0.0 else 1.0
         return self.impulse / over, self.moment / over
 
+    def begin_anew(self) -> None:
+        """Forget what acted so far."""
+        self.impulse, self.moment, self.duration = np.zeros(3), np.zeros(3), 0.0
+
 
 @dataclass
 class Obstacle:

@@ -114,8 +114,10 @@ def how_to_go_on(folder: Path) -> str:
 def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     for number, body in enumerate(simulation.bodies):
         group = file[f"body/{number}"]
-        if group["points"].shape != body.points.shape:
-            raise ValueError(f"body {number} has {group['points'].shape} values, not {body.points.shape}")
+        rows, points = group["points"].shape
+        if rows != len(body.points) or not points <= body.count:
+            raise ValueError(f"body {number} has {(rows, points)} values, not {body.points.shape}")
+        body.set_count(points)
         body.points[:] = numbers_of(group["points"])
         body.ids = numbers_of(group["ids"])
         body.stripe_starts = numbers_of(group["stripe_starts"])

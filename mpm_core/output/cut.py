@@ -84,9 +84,9 @@ def cuts_of(run: RunFolder) -> tuple[Cut, ...]:
 
 
 def domain_of(run: RunFolder) -> NDArray[np.float64]:
-    """The two corners of a run's domain in 3D, shape (2, 3) [m]. Raises InputError if the scene does not tell them."""
+    """The two corners of a run's domain, shape (2, axes) [m]. Raises InputError if the scene does not tell them."""
     with _told_by_scene(run):
-        return np.array([run.scene["grid"][name] for name in ("lower", "upper")], np.float64).reshape(2, 3)
+        return np.array([run.scene["grid"][name] for name in ("lower", "upper")], np.float64).reshape(2, run.space.axes)
 
 
 @contextmanager

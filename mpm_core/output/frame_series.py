@@ -1,6 +1,8 @@
 """The frames of a run for ParaView: numbered VTU files and `run.pvd`, which gives each its time."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -45,22 +47,28 @@ class FrameSeries:
                 path.unlink()
 
     def _write_collection(self) -> None:
-        root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
-        collection = ElementTree.SubElement(root, "Collection")
-        for file in self.files:
-            ElementTree.SubElement(collection, "DataSet", timestep=repr(file.time), part="0", file=file.path.name)
-        ElementTree.indent(root)
-        atomic.write_bytes(self.folder / COLLECTION_NAME, ElementTree.tostring(root, xml_declaration=True))
+        write_collection(self.folder / COLLECTION_NAME, self.files)
 
 
-def read_collection(folder: Path) -> tuple[FrameFile, ...]:
-    """Time and path of each frame that `run.pvd` in `folder` lists, in order of time.
+def write_collection(path: Path, files: Iterable[FrameFile]) -> None:
+    """Write a list of files with their times; those of one time are its parts."""
+    root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
+    collection = ElementTree.SubElement(root, "Collection")
+    for _, of_time in groupby(files, key=lambda file: file.time):
+        for part, file in enumerate(of_time):
+            ElementTree.SubElement(collection, "DataSet", timestep=repr(file.time), part=str(part), file=file.path.name)
+    ElementTree.indent(root)
+    atomic.write_bytes(path, ElementTree.tostring(root, xml_declaration=True))
+
+
+def read_collection(folder: Path, name: str = COLLECTION_NAME) -> tuple[FrameFile, ...]:
+    """Time and path of each frame that a list in `folder`, by default `run.pvd`, holds, in order of time.
 
     Raises InputError if there is no such file or it cannot be read.
     """
-    path = folder / COLLECTION_NAME
+    path = folder / name
     if not path.is_file():
-        raise InputError(f"{folder} holds no {COLLECTION_NAME}: no frame of a run was written there")
+        raise InputError(f"{folder} holds no {name}: no frame of a run was written there")
     try:
         entries = ElementTree.parse(path).getroot().iter("DataSet")
         return tuple(FrameFile(float(entry.attrib["timestep"]), folder / entry.attrib["file"]) for entry in entries)

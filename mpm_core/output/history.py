@@ -1,14 +1,13 @@
 """`history.csv`: scalars of the whole run, one row per recorded step."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
-from grainlaw.materials import InputError, atomic
+from grainlaw.mpm_core.output.rows import RowsWriter, read_rows
 from grainlaw.mpm_core.space import PLANE_STRAIN, SPACES, Space
 
 HISTORY_NAME = "history.csv"
@@ -18,8 +17,8 @@ HISTORY_NAME = "history.csv"
 class HistoryColumn:
     """One column: name, SI unit, doc, and whether its values are whole numbers.
 
-    `in_spaces` is the doc by the name of a space, where that makes a difference. An energy has the unit J and its doc
-    says "{per}" where it tells what the energy is per, as the space has it.
+    `in_spaces` is the doc by the name of a space, where that makes a difference. An energy has the unit J, a mass kg,
+    and its doc says "{per}" where it tells what it is per, as the space has it.
     """
 
     name: str
@@ -30,17 +29,20 @@ class HistoryColumn:
 
     def in_space(self, space: Space) -> "HistoryColumn":
         """The column with the unit and the doc that it has in a space."""
-        unit = energy_unit(space) if self.unit == "J" else self.unit
+        unit = self.unit + space.amount if self.unit in _AMOUNTS else self.unit
         doc = self.in_spaces.get(space.name, self.doc).format(per=_PER[space.amount])
         return replace(self, unit=unit, doc=doc, in_spaces={})
 
     def in_all_spaces(self) -> "HistoryColumn":
         """The column with the units and the docs that it has in one or the other space."""
-        unit = ", ".join(energy_unit(space) for space in SPACES.values()) if self.unit == "J" else self.unit
+        units = [self.in_space(space).unit for space in SPACES.values()]
+        unit = ", ".join(dict.fromkeys(units))
         docs = [self.doc, *(f"{_IN_WORDS[name]} {doc}" for name, doc in self.in_spaces.items())]
         return replace(self, unit=unit, doc="; ".join(docs).format(per=""), in_spaces={})
 
 
+# Units of what is per width or per radian in some spaces.
+_AMOUNTS = ("J", "kg")
 # What amounts are per, and how spaces are named in a sentence.
 _PER = {"/m": " per width", "/rad": " per radian", "": ""}
 _IN_WORDS = {"axisymmetric": "in axisymmetry", "3d": "in 3D"}
@@ -74,6 +76,14 @@ _COLUMNS = (
     HistoryColumn("inelastic_work", "J", "plastic and viscous work{per} since the start: internal work not stored"),
     HistoryColumn("wall_work", "J", "work done on the walls{per} since the start: friction and what they stop"),
     HistoryColumn("wall_friction", "J", "part of `wall_work` that sliding on friction walls dissipated"),
+    HistoryColumn("obstacle_work", "J", "work done on the obstacles{per} since the start: friction and what they stop"),
+    HistoryColumn("obstacle_friction", "J", "part of `obstacle_work` that sliding on obstacles dissipated"),
+    HistoryColumn("mass_left", "kg", "mass{per} that left through open sides since the start"),
+    HistoryColumn(
+        "outflow",
+        "J",
+        "energy of motion and height{per} that it took along, height over the lower corner of the domain",
+    ),
     HistoryColumn("numerical_dissipation", "J", "energy that transfers and time integration took{per} since the start"),
     HistoryColumn(
         "volume_projection", "J", "part of `potential_energy` that points gained by being moved apart, since the start"
@@ -99,42 +109,12 @@ def columns_in_all_spaces() -> tuple[HistoryColumn, ...]:
     return tuple(column.in_all_spaces() for column in _COLUMNS)
 
 
-class HistoryWriter:
-    """Appends rows to `history.csv` of a run's folder; each row reaches the file before `append` returns."""
+class HistoryWriter(RowsWriter):
+    """Appends rows to `history.csv` of a run's folder."""
 
     def __init__(self, folder: Path) -> None:
-        """Continue the history that the folder holds, or start one."""
-        path = folder / HISTORY_NAME
-        if not path.exists():
-            atomic.write_text(path, _line(_TYPES))
-        # Without a buffer, from which a row that did not fit on the disk would be written again.
-        self._file = path.open("ab", buffering=0)
-
-    def append(self, values: Mapping[str, float]) -> None:
-        """Append one row; `values` holds exactly the declared columns.
-
-        Raises ValueError naming the columns that are missing or not declared.
-        """
-        if values.keys() != _TYPES.keys():
-            raise ValueError(f"history row and declared columns differ in {sorted(values.keys() ^ _TYPES.keys())}")
-        row = memoryview(_line(repr(kind(values[name])) for name, kind in _TYPES.items()).encode())
-        while row:
-            row = row[self._file.write(row) :]
-
-    def close(self) -> None:
-        """Close the file."""
-        self._file.close()
-
-
-def keep_rows(folder: Path, rows: int) -> None:
-    """Remove all but the first rows, those of the checkpoint from which the run resumes.
-
-    Raises InputError if the history is missing.
-    """
-    path = folder / HISTORY_NAME
-    if not path.is_file():
-        raise InputError(f"{folder} holds no {HISTORY_NAME}")
-    atomic.write_text(path, "".join(_complete_lines(path)[: 1 + rows]))
+        """Continue the history that the folder holds, or start one. Raises InputError for one with other columns."""
+        super().__init__(folder / HISTORY_NAME, _TYPES)
 
 
 def read_history(folder: Path) -> NDArray[Any]:
@@ -142,23 +122,4 @@ def read_history(folder: Path) -> NDArray[Any]:
 
     A last row that is still being written is left out. Raises InputError if the file is missing or cannot be read.
     """
-    path = folder / HISTORY_NAME
-    if not path.is_file():
-        raise InputError(f"{folder} holds no {HISTORY_NAME}")
-    try:
-        lines = _complete_lines(path)
-        if not lines:
-            raise InputError(f"{path} is empty")
-        names = lines[0].strip().split(",")
-        dtype = np.dtype([(name, _TYPES.get(name, float)) for name in names])
-        return np.loadtxt(lines[1:], delimiter=",", dtype=dtype, ndmin=1) if len(lines) > 1 else np.empty(0, dtype)
-    except ValueError as error:
-        raise InputError(f"{path} cannot be read: {error}") from error
-
-
-def _line(entries: Iterable[str]) -> str:
-    return ",".join(entries) + "\n"
-
-
-def _complete_lines(path: Path) -> list[str]:
-    return [line for line in path.read_text().splitlines(keepends=True) if line.endswith("\n")]
+    return read_rows(folder / HISTORY_NAME, _TYPES)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +43,8 @@ class PileShape:
     height                    the level above which lies one cell's worth of material, above the floor of the domain;
                               in axisymmetry, where points have masses as their radii, of as many points
     center_of_mass_height     of all points, above the floor of the domain
+
+    Of what has left entirely runout and height are 0, fronts and centre of mass NaN.
     """
 
     runout: float
@@ -79,11 +82,13 @@ def shape_of(simulation: Simulation) -> PileShape:
 
 
 def pile_shape(bodies: Sequence[Body], measure: Measure) -> PileShape:
-    """Measure the shape of all bodies together."""
+    """Measure the shape of all bodies together. Where all material has left, nothing has no extent and no place."""
     space = bodies[0].space
     positions = np.concatenate([body.positions for body in bodies], axis=1)
     x, up = positions[0], positions[space.up]
     mass = np.concatenate([body.masses for body in bodies])
+    if len(mass) == 0:
+        return PileShape(runout=0.0, front_left=nan, front_right=nan, height=0.0, center_of_mass_height=nan)
     beyond = 0.5 * (1.0 - MASS_BETWEEN_FRONTS) * mass.sum()
     front_left = _level(x, mass, beyond)
     front_right = -_level(-x, mass, beyond)
@@ -116,5 +121,5 @@ def _level(coordinate: NDArray[np.float64], mass: NDArray[np.float64], share: fl
 
 def _points_per_cell(bodies: Sequence[Body], cell_size: float) -> float:
     """Points in a full cell, from the sizes of points at the start."""
-    volume = float(np.mean([body.masses.mean() / body.initial_density for body in bodies]))
+    volume = float(np.mean([body.masses.mean() / body.initial_density for body in bodies if body.count > 0]))
     return cell_size ** bodies[0].space.axes / volume

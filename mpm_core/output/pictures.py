@@ -5,11 +5,16 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 from grainlaw.mpm_core.output.cut import PLANE, Cut, cuts_of, domain_of
+from grainlaw.mpm_core.output.force_picture import draw_forces
+from grainlaw.mpm_core.output.forces import FORCES_NAME
 from grainlaw.mpm_core.output.frame import Frame
 from grainlaw.mpm_core.output.history import energy_unit, history_columns
 from grainlaw.mpm_core.output.materials_of_points import Materials, materials_of
+from grainlaw.mpm_core.output.obstacle_drawing import boxes_within, draw_obstacles
+from grainlaw.mpm_core.output.obstacle_series import obstacles_at
 from grainlaw.mpm_core.output.picture_style import (
     LEGEND_HEIGHT,
     PAPER_WIDTH,
@@ -26,6 +31,7 @@ from grainlaw.mpm_core.output.point_image import Box, bounding_box, draw_points,
 from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.output.snapshots import draw_snapshots
 from grainlaw.mpm_core.output.solid_picture import draw_solid_frame
+from grainlaw.mpm_core.output.vtp import ObstacleFrame
 
 _UNITS = {column.name: column.unit for column in history_columns()}
 _ENERGIES = (
@@ -35,8 +41,11 @@ _ENERGIES = (
     "elastic_energy",
     "inelastic_work",
     "wall_work",
+    "obstacle_work",
+    "outflow",
     "numerical_dissipation",
 )
+_OF_SOME = ("obstacle_work", "outflow")
 _SPREADING = 1.1
 USUAL_FIELD, USUAL_LIMITS = "shear_strain", (0.0, 3.0)
 
@@ -49,21 +58,25 @@ def draw_frame(
     spacing: float | None = None,
     materials: Materials | None = None,
     cut: Cut = PLANE,
+    obstacles: Sequence[ObstacleFrame] = (),
+    domain: NDArray[np.float64] | None = None,
 ) -> None:
     """Write a picture of one frame coloured by a field, a vector by its length.
 
     `spacing` [m] is that of the points when they were generated; without it the present distances stand in. Several
-    `materials` get outlines, with their names below. `cut` is the plane that is shown.
+    `materials` get outlines, with their names below. `cut` is the plane that is shown;
+    `obstacles` are grey, and those within the `domain`, given by its two corners [m], are shown whole.
     Raises InputError if the frame does not hold the field.
     """
     shown = frame.field(field)
     values = scalar_values(shown)
     spacing = point_spacing(frame.positions) if spacing is None else spacing
-    box = view_box([bounding_box(frame.positions, spacing, cut)])
+    box = view_box([bounding_box(frame.positions, spacing, cut), *boxes_within(obstacles, domain, cut)])
     groups = materials.of_points(frame) if materials is not None else None
     with paper_picture(path, _height(box) + LEGEND_HEIGHT * (groups is not None), "compressed") as figure:
         axes = figure.subplots()
         image = draw_points(axes, frame.positions, values, spacing, color_scale([values], limits), groups, cut)
+        draw_obstacles(axes, obstacles, cut, box)
         across, up = cut.labels
         axes.set(xlabel=across, ylabel=up, xlim=box[:2], ylim=box[2:], title=time_label(frame.time))
         color_bar(figure, image, [axes], field_label(shown))
@@ -98,25 +111,40 @@ def draw_history(runs: Sequence[tuple[str, RunFolder]], path: Path) -> None:
 def write_run_pictures(folder: Path) -> list[Path]:
     """Write final.png, history.png and, if the runout grew by more than a tenth, snapshots.png; return their paths.
 
-    They show what `output.picture_field` of the scene says; by default the shear strain, or without it the first field
-    that the frames hold. Raises InputError if the folder lacks frames or history, or if its frames hold no such field.
+    With obstacles also forces.png. final.png is of the last frame that holds material. They show what
+    `output.picture_field` of the scene says; by default the shear strain, or without it the first field that the frames
+    hold. Raises InputError if the folder lacks frames or history, or if its frames hold no such field.
     """
     run = RunFolder(folder)
-    last = run.load_frame(-1)
+    last = _last_with_points(run)
     field = run.scene.get("output", {}).get("picture_field") or _usual_field(last)
     limits = USUAL_LIMITS if field == USUAL_FIELD else None
     written = [folder / "final.png", folder / "history.png"]
     spacing, cuts = point_spacing(run.load_frame(0).positions), cuts_of(run)
+    obstacles = obstacles_at(folder, last.time)
     if run.space.axes == 3:
-        draw_solid_frame(last, field, written[0], cuts, domain_of(run), limits, spacing, materials_of(run))
+        draw_solid_frame(last, field, written[0], cuts, domain_of(run), limits, spacing, materials_of(run), obstacles)
     else:
-        draw_frame(last, field, written[0], limits, spacing, materials_of(run), cuts[0])
+        domain = domain_of(run) if obstacles else None
+        draw_frame(last, field, written[0], limits, spacing, materials_of(run), cuts[0], obstacles, domain)
     draw_history([(folder.name, run)], written[1])
     runout = run.history["runout"]
     if runout.max() > _SPREADING * runout[0]:
         written.append(folder / "snapshots.png")
         draw_snapshots([(folder.name, run)], written[2], field, limits)
+    if (folder / FORCES_NAME).exists():
+        written.append(folder / "forces.png")
+        draw_forces(run, written[-1])
     return written
+
+
+def _last_with_points(run: RunFolder) -> Frame:
+    """The last frame before everything has left."""
+    for index in range(len(run.frame_files) - 1, 0, -1):
+        frame = run.load_frame(index)
+        if len(frame.positions) > 0:
+            return frame
+    return run.load_frame(0)
 
 
 def _usual_field(frame: Frame) -> str:
@@ -137,12 +165,17 @@ def _draw_shape(runout: Axes, heights: Axes, label: str, run: RunFolder) -> None
     heights.plot(time, run.history["center_of_mass_height"], "--", color=line.get_color())
 
 
+def _is_idle(run: RunFolder, name: str) -> bool:
+    """Whether an energy belongs to obstacles or open sides that the run does not have."""
+    return name in _OF_SOME and (name not in (run.history.dtype.names or ()) or not run.history[name].any())
+
+
 def _draw_energies(axes: Axes, run: RunFolder) -> None:
     columns = run.history.dtype.names or ()
     splits_work = "elastic_energy" in columns and np.isfinite(run.history["elastic_energy"]).all()
     parts, whole = {"elastic_energy", "inelastic_work"}, {"internal_work"}
     for name in _ENERGIES:
-        if name not in (whole if splits_work else parts):
+        if name not in (whole if splits_work else parts) and not _is_idle(run, name):
             axes.plot(run.history["t"], run.history[name] - run.history[name][0], label=name.replace("_", " "))
     axes.axhline(0.0, color="black", linewidth=0.5)
     axes.set_xlabel("$t$ [s]")

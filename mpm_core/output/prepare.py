@@ -7,22 +7,28 @@ from pathlib import Path
 from grainlaw.materials import InputError, atomic
 from grainlaw.mpm_core.output.checkpoint import CHECKPOINT_NAME, Clock, read_checkpoint
 from grainlaw.mpm_core.output.folder_lock import held
+from grainlaw.mpm_core.output.forces import FORCES_NAME
 from grainlaw.mpm_core.output.frame_series import COLLECTION_NAME, FrameSeries
 from grainlaw.mpm_core.output.hdf5_reading import UNREADABLE
-from grainlaw.mpm_core.output.history import HISTORY_NAME, keep_rows
+from grainlaw.mpm_core.output.history import HISTORY_NAME
+from grainlaw.mpm_core.output.obstacle_series import OBSTACLES_NAME, ObstacleSeries
 from grainlaw.mpm_core.output.quantities import QUANTITIES_NAME
+from grainlaw.mpm_core.output.rows import keep_rows
 from grainlaw.mpm_core.output.run_folder import SCENE_NAME, RunFolder
 from grainlaw.mpm_core.output.summary import SUMMARY_NAME
 from grainlaw.mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame, drop_after
 from grainlaw.mpm_core.simulation import Simulation
 
-OF_THE_END = (SUMMARY_NAME, "final.png", "history.png", "snapshots.png")
+OF_THE_END = (SUMMARY_NAME, "final.png", "history.png", "snapshots.png", "forces.png")
 OWN_FILES = (
     SCENE_NAME,
     VTKHDF_NAME,
     CHECKPOINT_NAME,
     COLLECTION_NAME,
     HISTORY_NAME,
+    FORCES_NAME,
+    OBSTACLES_NAME,
+    "obstacle_*.vtp",
     QUANTITIES_NAME,
     "points_*.vtu",
     *OF_THE_END,
@@ -58,7 +64,10 @@ def go_on(folder: Path, simulation: Simulation) -> Clock:
     Raises InputError for a checkpoint or a file that cannot be read, or belongs to another scene or law.
     """
     clock = read_checkpoint(folder, simulation)
-    keep_rows(folder, clock.history_rows)
+    keep_rows(folder / HISTORY_NAME, clock.history_rows)
+    if simulation.obstacles.all:
+        keep_rows(folder / FORCES_NAME, clock.history_rows)
+        ObstacleSeries(folder, simulation).drop_after(simulation.time)
     if simulation.scene.output.vtu:
         FrameSeries(folder).drop_after(simulation.time)
     if simulation.scene.output.vtkhdf:

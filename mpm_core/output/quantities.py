@@ -10,21 +10,28 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from grainlaw.materials import InputError, atomic
+from grainlaw.mpm_core.output.forces import FORCES_NAME
 from grainlaw.mpm_core.output.frame import Field
-from grainlaw.mpm_core.output.history import HISTORY_NAME, history_columns
+from grainlaw.mpm_core.output.history import HISTORY_NAME, HistoryColumn, history_columns
 from grainlaw.mpm_core.space import PLANE_STRAIN, Space
 
 QUANTITIES_NAME = "quantities.csv"
 POINT_FILES = "points_*.vtu"
 
 
-def write_quantities(folder: Path, fields: Iterable[Field], space: Space = PLANE_STRAIN) -> None:
-    """Write the table for the given fields of the points and all columns of the history, as they are in the space."""
+def write_quantities(
+    folder: Path, fields: Iterable[Field], space: Space = PLANE_STRAIN, forces: Iterable[HistoryColumn] = ()
+) -> None:
+    """Write the table for the given fields of the points and all columns of the history, as they are in the space.
+
+    `forces` are the columns of the forces on obstacles.
+    """
     table = io.StringIO(newline="")
     writer = csv.writer(table, lineterminator="\n")
     writer.writerow(["file", "name", "unit", "doc"])
     writer.writerows([POINT_FILES, field.name, field.unit, field.doc] for field in fields)
     writer.writerows([HISTORY_NAME, column.name, column.unit, column.doc] for column in history_columns(space))
+    writer.writerows([FORCES_NAME, column.name, column.unit, column.doc] for column in forces)
     atomic.write_text(folder / QUANTITIES_NAME, table.getvalue())
 
 

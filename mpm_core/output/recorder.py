@@ -4,9 +4,11 @@ from pathlib import Path
 
 from grainlaw.mpm_core.output.checkpoint import Clock, write_checkpoint
 from grainlaw.mpm_core.output.fields import make_frame
+from grainlaw.mpm_core.output.forces import ForcesWriter, force_columns
 from grainlaw.mpm_core.output.frame_series import FrameSeries
 from grainlaw.mpm_core.output.history import HistoryWriter, read_history
 from grainlaw.mpm_core.output.observables import PileShape, interior_overfill, measure_of, pile_shape
+from grainlaw.mpm_core.output.obstacle_series import ObstacleSeries
 from grainlaw.mpm_core.output.quantities import write_quantities
 from grainlaw.mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame
 from grainlaw.mpm_core.scene.model import Scene
@@ -39,7 +41,10 @@ class Recorder:
         self.series = FrameSeries(folder) if simulation.scene.output.vtu else None
         self.history = HistoryWriter(folder)
         frame = make_frame(simulation.time, simulation.steps, simulation.bodies, simulation.fields)
-        write_quantities(folder, frame.fields, simulation.space)
+        names = [obstacle.name for obstacle in simulation.obstacles.all]
+        self.forces = ForcesWriter(folder, simulation.obstacles, simulation.space) if names else None
+        self.obstacles = ObstacleSeries(folder, simulation) if names else None
+        write_quantities(folder, frame.fields, simulation.space, force_columns(simulation.space, names))
 
     def next_frame_time(self) -> float:
         """When the next frame is due [s]: at whole multiples of the interval and at the end."""
@@ -74,10 +79,14 @@ class Recorder:
             self._append_history()
 
     def close(self) -> None:
-        """Close the history."""
+        """Close the tables."""
         self.history.close()
+        if self.forces is not None:
+            self.forces.close()
 
     def _append_history(self) -> None:
+        if self.forces is not None:
+            self.forces.append_row(self.simulation.time)
         shape, ledger, elastic = self.shape(), self.simulation.ledger, self.simulation.elastic_energy()
         overfill = interior_overfill(self.simulation)
         self.history.append(
@@ -96,6 +105,10 @@ class Recorder:
                 "inelastic_work": ledger.inelastic_work(elastic),
                 "wall_work": ledger.wall_work,
                 "wall_friction": ledger.wall_friction,
+                "obstacle_work": ledger.obstacle_work,
+                "obstacle_friction": ledger.obstacle_friction,
+                "mass_left": ledger.mass_left,
+                "outflow": ledger.outflow,
                 "numerical_dissipation": ledger.numerical_dissipation,
                 "volume_projection": ledger.volume_projection,
                 "overfill": overfill.mean,
@@ -111,6 +124,8 @@ class Recorder:
         if not (output.vtu or output.vtkhdf):
             return
         frame = make_frame(simulation.time, simulation.steps, simulation.bodies, simulation.fields)
+        if self.obstacles is not None:
+            self.obstacles.write(self.clock.next_frame)
         if self.series is not None:
             self.series.write(frame)
         if output.vtkhdf:

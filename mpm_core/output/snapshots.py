@@ -12,9 +12,11 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from grainlaw.materials import InputError
-from grainlaw.mpm_core.output.cut import Cut, cuts_of
+from grainlaw.mpm_core.output.cut import Cut, cuts_of, domain_of
 from grainlaw.mpm_core.output.frame import Frame
 from grainlaw.mpm_core.output.materials_of_points import Materials, materials_of
+from grainlaw.mpm_core.output.obstacle_drawing import boxes_within, draw_obstacles
+from grainlaw.mpm_core.output.obstacle_series import obstacles_at
 from grainlaw.mpm_core.output.picture_style import (
     LEGEND_HEIGHT,
     PAPER_WIDTH,
@@ -28,24 +30,31 @@ from grainlaw.mpm_core.output.picture_style import (
 )
 from grainlaw.mpm_core.output.point_image import Box, ColorScale, bounding_box, draw_points, point_spacing, view_box
 from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.output.vtp import ObstacleFrame
 
 NORMALIZED_RUNOUTS = (0.1, 0.5, 1.0)
 
 
 @dataclass(frozen=True)
 class _Snapshot:
-    """A frame, its normalised runout, the first frame's spacing of points [m], their materials, and what is shown."""
+    """A frame, its normalised runout, the first frame's spacing of points [m], their materials, and what is shown.
+
+    `obstacles` are those of its time, `domain` the two corners of the domain [m].
+    """
 
     frame: Frame
     normalized_runout: float
     spacing: float
     groups: NDArray[np.int64] | None
     cut: Cut
+    obstacles: Sequence[ObstacleFrame]
+    domain: NDArray[np.float64] | None
 
     @property
-    def box(self) -> Box:
-        """The bounding box of what is shown [m]."""
-        return bounding_box(self.frame.positions, self.spacing, self.cut)
+    def boxes(self) -> list[Box]:
+        """The bounding boxes of what is shown [m]."""
+        of_points = bounding_box(self.frame.positions, self.spacing, self.cut)
+        return [of_points, *boxes_within(self.obstacles, self.domain, self.cut)]
 
 
 def normalized_runout(run: RunFolder, times: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -80,13 +89,13 @@ def draw_snapshots(
     all_snapshots = [snapshot for _, row in rows for snapshot in row]
     fields = [snapshot.frame.field(field) for snapshot in all_snapshots]
     scale = color_scale([scalar_values(one) for one in fields], limits)
-    box = view_box([one.box for one in all_snapshots])
+    box = view_box([box for one in all_snapshots for box in one.boxes])
     is_outlined = any(one.groups is not None for one in all_snapshots)
     with paper_picture(path, _height(len(rows), box) + LEGEND_HEIGHT * is_outlined, "compressed") as figure:
         grid = figure.subplots(len(rows), len(NORMALIZED_RUNOUTS), sharex=True, sharey=True, squeeze=False)
         for axes_row, (label, row) in zip(grid, rows, strict=True):
             for axes, snapshot in zip(axes_row, row, strict=True):
-                _draw_snapshot(axes, snapshot, field, scale)
+                _draw_snapshot(axes, snapshot, field, scale, box)
             cut = row[0].cut
             axes_row[0].set_title(f"{label}, {cut.name}" if cut.name else label, loc="left")
             axes_row[0].set_ylabel(cut.labels[1])
@@ -107,13 +116,19 @@ def _snapshots(run: RunFolder, materials: Materials) -> list[_Snapshot]:
     spacing, cut = point_spacing(run.load_frame(0).positions), cuts_of(run)[0]
     chosen = [int(np.argmin(np.abs(reached - target))) for target in NORMALIZED_RUNOUTS]
     frames = [(run.load_frame(index), float(reached[index])) for index in chosen]
-    return [_Snapshot(frame, share, spacing, materials.of_points(frame), cut) for frame, share in frames]
+    found = []
+    for frame, share in frames:
+        obstacles = obstacles_at(run.path, frame.time)
+        domain = domain_of(run) if obstacles else None
+        found.append(_Snapshot(frame, share, spacing, materials.of_points(frame), cut, obstacles, domain))
+    return found
 
 
-def _draw_snapshot(axes: Axes, snapshot: _Snapshot, field: str, scale: ColorScale) -> None:
+def _draw_snapshot(axes: Axes, snapshot: _Snapshot, field: str, scale: ColorScale, box: Box) -> None:
     frame = snapshot.frame
     values = scalar_values(frame.field(field))
     draw_points(axes, frame.positions, values, snapshot.spacing, scale, snapshot.groups, snapshot.cut)
+    draw_obstacles(axes, snapshot.obstacles, snapshot.cut, box)
     note = rf"$\bar{{w}} = {snapshot.normalized_runout:.2f}$" + "\n" + time_label(frame.time)
     axes.text(0.97, 0.94, note, transform=axes.transAxes, ha="right", va="top", fontsize="small")
 

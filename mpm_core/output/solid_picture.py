@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from grainlaw.mpm_core.output.cut import Cut
 from grainlaw.mpm_core.output.frame import Frame
 from grainlaw.mpm_core.output.materials_of_points import Materials
+from grainlaw.mpm_core.output.obstacle_drawing import boxes_within, draw_obstacles
 from grainlaw.mpm_core.output.picture_style import (
     LEGEND_HEIGHT,
     PAPER_WIDTH,
@@ -22,6 +23,7 @@ from grainlaw.mpm_core.output.picture_style import (
 )
 from grainlaw.mpm_core.output.point_image import bounding_box, draw_points, view_box
 from grainlaw.mpm_core.output.rendering import View, draw_view, rendered
+from grainlaw.mpm_core.output.vtp import ObstacleFrame
 
 # Of the paper's width; the rest is the colour bar.
 _SHARE = 0.85
@@ -39,15 +41,21 @@ def draw_solid_frame(
     limits: tuple[float, float] | None,
     spacing: float,
     materials: Materials,
+    obstacles: Sequence[ObstacleFrame] = (),
 ) -> None:
-    """Write the picture of a frame in 3D; `domain` are its two corners [m], the rest is that of `draw_frame`."""
+    """Write the picture of a frame in 3D; `domain` are its two corners [m], the rest is that of `draw_frame`.
+
+    Obstacles are on the cuts, not in the view of the whole, which they would hide.
+    """
     shown = frame.field(field)
     values = scalar_values(shown)
     scale = color_scale([values], limits)
     groups = materials.of_points(frame)
     view = View(frame.positions, values, spacing, scale, domain)
     image = rendered(view)
-    boxes = [view_box([bounding_box(frame.positions, spacing, cut)]) for cut in cuts]
+    boxes = [
+        view_box([bounding_box(frame.positions, spacing, cut), *boxes_within(obstacles, domain, cut)]) for cut in cuts
+    ]
     widths = [box[1] - box[0] for box in boxes]
     height_of_view = _HIGHEST_VIEW
     if image is not None:
@@ -64,6 +72,7 @@ def draw_solid_frame(
         for number, (cut, box) in enumerate(zip(cuts, boxes, strict=True)):
             axes = figure.add_subplot(grid[1, number])
             drawn = draw_points(axes, frame.positions, values, spacing, scale, groups, cut)
+            draw_obstacles(axes, obstacles, cut, box)
             across, up = cut.labels
             axes.set(xlabel=across, ylabel=up, xlim=box[:2], ylim=box[2:], title=cut.name)
             panels.append(axes)

@@ -20,7 +20,7 @@ class FinalState(BaseModel):
 
     runout: FiniteFloat
     height: FiniteFloat
-    center_of_mass_height: FiniteFloat
+    center_of_mass_height: FiniteFloat | None
     kinetic_energy: FiniteFloat
 
 
@@ -39,6 +39,8 @@ class RunSummary(BaseModel):
     cells: NonNegativeInt
     steps: NonNegativeInt
     simulated_time: FiniteFloat
+    mass_left: FiniteFloat
+    points_left: NonNegativeInt
     wall_time: FiniteFloat
     compile_time: FiniteFloat
     point_steps_per_second: FiniteFloat

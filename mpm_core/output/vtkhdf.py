@@ -2,13 +2,14 @@
 
 Layout: https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format/vtkhdf_specifications.html. Positions and
 fields of the steps lie one after the other; `Steps/PointOffsets` and `Steps/PointDataOffsets/NAME` say where each
-begins. The vertices are the same at all steps and are stored once.
+begins. The vertices are stored once: those of a step are the first ones, as many as it has points, never more than the
+first step.
 
 A frame is appended in place, since writing a copy for each would cost the square of the number of frames. One chunk
-per step and array means that the data of earlier steps is never touched, and the new index is put into the file last:
-a run that is killed while it appends, or finds the disk full, leaves them readable. Only the moment in which the index
-is written is not protected; a resumed run therefore writes the file anew, from the VTU frames or else from itself,
-which also drops the steps after the checkpoint.
+per step and array, as long as the first, means that the data of earlier steps is never touched, and the new index is
+put into the file last: a run that is killed while it appends, or finds the disk full, leaves them readable. Only the
+moment in which the index is written is not protected; a resumed run therefore writes the file anew, from the VTU frames
+or else from itself, which also drops the steps after the checkpoint.
 """
 
 from collections.abc import Iterator
@@ -30,7 +31,7 @@ _STEPS_PER_CHUNK = 1024
 
 
 def append_frame(path: Path, frame: Frame) -> None:
-    """Append a frame to the file, which is created with its first frame; the number of points never changes.
+    """Append a frame to the file, which is created with its first frame; none has more points than that.
 
     Raises OSError where the disk is full; the file is then as it was.
     """
@@ -62,11 +63,12 @@ def _frames(root: h5py.Group, last: float) -> Iterator[Frame]:
     """The frames until a time [s]; the file does not hold their step numbers."""
     steps = root["Steps"]
     times = numbers_of(steps["Values"])[: int(steps.attrs["NSteps"])]
-    (points,) = set(numbers_of(root["NumberOfPoints"])[: len(times)].tolist())
-    if not times[0] <= last or not np.all(np.diff(times) > 0):
+    points = numbers_of(root["NumberOfPoints"])[: len(times)].tolist()
+    if len(points) != len(times) or not len(times) or not times[0] <= last or not np.all(np.diff(times) > 0):
         raise ValueError(f"{times} s are no times of frames from the start to {last:g} s")
     for number in range(np.count_nonzero(times <= last)):
-        rows = slice(number * points, (number + 1) * points)
+        first = number * points[0]
+        rows = slice(first, first + points[number])
         fields = tuple(
             Field(name, stored.attrs["unit"], stored.attrs["doc"], _rows(stored, rows))
             for name, stored in root["PointData"].items()
@@ -140,16 +142,17 @@ def _append(root: h5py.Group, frame: Frame) -> None:
     """Append the data first and count the step last."""
     steps, points = root["Steps"], len(frame.positions)
     number = int(steps.attrs["NSteps"])
-    _put(root["Points"], number * points, frame.positions)
+    first = number * root["Points"].chunks[0]
+    _put(root["Points"], first, frame.positions)
     for field in frame.fields:
-        _put(root["PointData"][field.name], number * points, field.stored_values())
-        _put(steps["PointDataOffsets"][field.name], number, [number * points])
+        _put(root["PointData"][field.name], first, field.stored_values())
+        _put(steps["PointDataOffsets"][field.name], number, [first])
     _put(root["NumberOfPoints"], number, [points])
     for kind in _CELL_KINDS:
         count = points if kind == "Vertices" else 0
         _put(root[kind]["NumberOfCells"], number, [count])
         _put(root[kind]["NumberOfConnectivityIds"], number, [count])
-    rows = {"Values": frame.time, "PartOffsets": number, "NumberOfParts": 1, "PointOffsets": number * points}
+    rows = {"Values": frame.time, "PartOffsets": number, "NumberOfParts": 1, "PointOffsets": first}
     for name, value in rows.items():
         _put(steps[name], number, [value])
     for name in ("CellOffsets", "ConnectivityIdOffsets"):

@@ -6,6 +6,7 @@ key `UNITS_LABEL`, time and step as field data (`TimeValue` is the name that the
 """
 
 from pathlib import Path
+from xml.etree import ElementTree
 
 import meshio
 import numpy as np
@@ -15,6 +16,8 @@ from grainlaw.mpm_core.output.frame import Field, Frame
 
 _POSITION_ARRAY = "Points"
 _END_OF_ARRAY = b"</DataArray>"
+# Bytes in which the number of points is told.
+_HEAD = 2048
 _START_OF_GRID = b"<UnstructuredGrid>"
 
 
@@ -39,6 +42,9 @@ def read_vtu(path: Path, documentation: dict[str, tuple[str, str]]) -> Frame:
     if not path.is_file():
         raise InputError(f"frame {path} is missing")
     try:
+        empty = _empty_frame(path, documentation)
+        if empty is not None:
+            return empty
         mesh = meshio.vtu.read(path)
         time, step = float(mesh.field_data["TimeValue"][0]), int(mesh.field_data["step"][0])
     except Exception as error:  # meshio raises whatever its parser meets
@@ -48,6 +54,21 @@ def read_vtu(path: Path, documentation: dict[str, tuple[str, str]]) -> Frame:
         for name, values in mesh.point_data.items()
     )
     return Frame(time, step, mesh.points, fields)
+
+
+def _empty_frame(path: Path, documentation: dict[str, tuple[str, str]]) -> Frame | None:
+    """A frame after all material has left, which meshio does not read; None if the file holds points."""
+    with path.open("rb") as file:
+        if b'NumberOfPoints="0"' not in file.read(_HEAD):
+            return None
+    root = ElementTree.parse(path).getroot()
+    told = {array.get("Name"): array.text or "" for array in root.iterfind(".//FieldData/DataArray")}
+    fields = tuple(
+        Field(name, *documentation.get(name, ("", "")), np.empty((0, 3) if array.get("NumberOfComponents") else (0,)))
+        for array in root.iterfind(".//PointData/DataArray")
+        if (name := array.get("Name")) is not None
+    )
+    return Frame(float(told["TimeValue"]), int(told["step"]), np.empty((0, 3)), fields)
 
 
 def _with_time_and_units(xml: bytes, frame: Frame) -> bytes:

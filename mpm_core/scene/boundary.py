@@ -1,4 +1,4 @@
-"""The sides of the domain: walls, and sides that are joined to their opposites."""
+"""The sides of the domain: walls, open sides, and sides that are joined to their opposites."""
 
 from typing import Annotated, Any, Literal
 
@@ -9,10 +9,11 @@ from grainlaw.mpm_core.space import Space
 
 
 class WallSection(Section):
-    """A wall, or a side joined to its opposite."""
+    """A wall, an open side, or a side joined to its opposite."""
 
-    kind: Literal["free_slip", "no_slip", "friction", "periodic"] = Field(
-        description="free_slip and no_slip hold the material at the wall; friction lets it leave and slide"
+    kind: Literal["free_slip", "no_slip", "friction", "periodic", "open"] = Field(
+        description="free_slip and no_slip hold the material at the wall; friction lets it leave and slide; at an open "
+        "side there is no wall, and what goes through it is gone"
     )
     coefficient: float = Field(default=0.0, ge=0, description="Coulomb friction coefficient of a friction wall [1]")
     velocity: Annotated[float | tuple[float, float, float], number_or_three("velocity", LARGEST_SPEED, "m/s")] = Field(

@@ -31,6 +31,8 @@ class Plan:
     wall_time          of all steps and all output [s], without compilation
     compile_time       of the kernels that were not on disk yet and now are [s]
     savings            what this scene need not do or keep
+    near_obstacles     pairs of points and obstacles that may touch, after the timed steps; 0 without obstacles
+    obstacle_share     of the timed steps that went to obstacles [1]
     """
 
     laws: list[str]
@@ -50,6 +52,8 @@ class Plan:
     fields: list[str]
     savings: list[str]
     threads: int
+    near_obstacles: int
+    obstacle_share: float
 
 
 def plan(scene: Scene, threads: int = 1) -> Plan:
@@ -68,7 +72,7 @@ def _plan(scene: Scene, threads: int) -> Plan:
     points = sum(body.count for body in simulation.bodies)
     stops = math.ceil(scene.time.end / frame_interval(scene) - 1e-9)
     output_time = _output_time(simulation, stops + 1)
-    seconds = _seconds_per_step(simulation)
+    seconds, obstacle_share = _seconds_per_step(simulation)
     memory_bytes = peak_memory()
     played = rehearsals(scene, points, threads)
     seconds += played[-1].growth * points
@@ -91,6 +95,8 @@ def _plan(scene: Scene, threads: int) -> Plan:
         fields=simulation.fields,
         savings=_savings(simulation),
         threads=threads,
+        near_obstacles=simulation.obstacles.candidates,
+        obstacle_share=obstacle_share,
     )
 
 
@@ -120,15 +126,21 @@ def _in_single(simulation: Simulation) -> list[str]:
     return ["half of the memory for points and for active nodes", *laws]
 
 
-def _seconds_per_step(simulation: Simulation) -> float:
-    """Median of some steps as a run takes them, after those that compile or load the kernels."""
-    durations = []
-    for _ in range(FIRST_STEPS + TIMED_STEPS):
+def _seconds_per_step(simulation: Simulation) -> tuple[float, float]:
+    """Median of some steps as a run takes them, after those that compile or load the kernels; the share of obstacles.
+
+    Their contact is counted, not the search for who may touch, which is a part of the sort.
+    """
+    durations, at_obstacles = [], 0.0
+    for number in range(FIRST_STEPS + TIMED_STEPS):
+        if number == FIRST_STEPS:
+            at_obstacles = simulation.obstacles.wall_time
         dt, _ = simulation.next_step(simulation.time + simulation.scene.time.end)
         started = time.perf_counter()
         simulation.step(dt)
         durations.append(time.perf_counter() - started)
-    return statistics.median(durations[FIRST_STEPS:])
+    timed = durations[FIRST_STEPS:]
+    return statistics.median(timed), (simulation.obstacles.wall_time - at_obstacles) / sum(timed)
 
 
 def _output_time(simulation: Simulation, frames: int) -> float:

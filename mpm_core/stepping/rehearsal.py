@@ -68,7 +68,7 @@ def rehearse(scene: Scene, factor: int, threads: int) -> Rehearsal:
             signal_speed, before = simulation.signal_speed, time.perf_counter()
     except SimulationError:
         pass
-    points = sum(body.count for body in simulation.bodies)
+    points = simulation.initial_points
     return Rehearsal(simulation.grid.cell_size, np.array(times), np.array(travelled), _growth(durations) / points)
 
 

@@ -136,7 +136,7 @@ def refuse_impossible_steps(simulation: Simulation) -> None:
 
 def _summary(simulation: Simulation, recorder: Recorder, wall_time: float, compile_time: float) -> RunSummary:
     scene, shape, ledger = simulation.scene, recorder.shape(), simulation.ledger
-    points = sum(body.count for body in simulation.bodies)
+    points = simulation.initial_points
     released = ledger.initial_kinetic + max(0.0, -ledger.potential)
     return RunSummary(
         scene=scene.title,
@@ -145,6 +145,8 @@ def _summary(simulation: Simulation, recorder: Recorder, wall_time: float, compi
         cells=math.prod(scene.grid.cells),
         steps=simulation.steps,
         simulated_time=simulation.time,
+        mass_left=ledger.mass_left,
+        points_left=points - sum(body.count for body in simulation.bodies),
         wall_time=wall_time,
         compile_time=compile_time,
         point_steps_per_second=points * simulation.steps / max(wall_time - compile_time, 1e-9),
@@ -152,7 +154,7 @@ def _summary(simulation: Simulation, recorder: Recorder, wall_time: float, compi
         final=FinalState(
             runout=shape.runout,
             height=shape.height,
-            center_of_mass_height=shape.center_of_mass_height,
+            center_of_mass_height=None if math.isnan(shape.center_of_mass_height) else shape.center_of_mass_height,
             kinetic_energy=ledger.kinetic,
         ),
         energy_balance_error=abs(ledger.numerical_dissipation) / released if released > 0.0 else 0.0,

@@ -45,7 +45,7 @@ def _row(name: str, run: RunFolder) -> tuple[str, ...]:
         f"{summary.simulated_time:.3g}",
         f"{final.runout:.4f}",
         f"{final.height:.4f}",
-        f"{final.center_of_mass_height:.4f}",
+        "" if final.center_of_mass_height is None else f"{final.center_of_mass_height:.4f}",
         f"{final.kinetic_energy:.3g} {energy_unit(run.space)}",
         f"{summary.energy_balance_error:.1e}",
         f"{summary.wall_time:.1f}",
