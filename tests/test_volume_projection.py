@@ -87,7 +87,7 @@ def test_air_before_a_wall_takes_out_the_cells_above_it_and_no_others_whatever_a
     expected = full > 0.0
     expected[4:7, near] = False
     for axis, fill, interior in ((1, full, expected), (0, full.T, expected.T)):
-        window = CellWindow((-1, -1), fill.shape, ((True, True), (True, True)), ())
+        window = CellWindow((-1, -1), fill.shape, ((True, True), (True, True)), ((False, False),) * 2, ())
         found = CellVolumes(window, fill, np.zeros_like(fill), [WallGap(axis, is_lower, is_open)])
         np.testing.assert_array_equal(found.is_interior(), interior)
 

@@ -37,6 +37,7 @@ def compare(
 
     from grainlaw.mpm_core.output.history import energy_unit
     from grainlaw.mpm_core.output.run_folder import RunFolder
+    from grainlaw.mpm_core.output.summary import in_digits
 
     if dem:
         _judge(folders, dem, out)
@@ -63,7 +64,7 @@ def compare(
             f"{summary.points:,}",
             f"{final.runout:.4f}",
             f"{final.height:.4f}",
-            f"{final.center_of_mass_height:.4f}",
+            in_digits(final.center_of_mass_height),
             f"{final.kinetic_energy:.3g} {energy_unit(run.space)}",
             f"{summary.wall_time:.1f}",
         )

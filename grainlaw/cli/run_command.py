@@ -53,12 +53,9 @@ def run(
     _print_result(folder, summary, scene.in_space.amount)
 
 
-def in_metres(length: float | None) -> str:
-    """A length with its unit, or that there is none."""
-    return "none" if length is None else f"{length:.4f} m"
-
-
 def _print_result(folder: Path, summary: "RunSummary", amount: str) -> None:
+    from grainlaw.mpm_core.output.summary import in_digits
+
     final, waited = summary.final, f"{summary.compile_time:.1f} s to compile or load kernels"
     typer.echo(
         f"{summary.scene or folder.name}: t = {summary.simulated_time:g} s, {counted(summary.points, 'point')}, "
@@ -66,8 +63,8 @@ def _print_result(folder: Path, summary: "RunSummary", amount: str) -> None:
         f"({summary.point_steps_per_second / 1e6:.1f} million point-steps/s on {counted(summary.threads, 'thread')})"
     )
     typer.echo(
-        f"runout {final.runout:.4f} m, height {final.height:.4f} m, "
-        f"centre of mass {in_metres(final.center_of_mass_height)}, kinetic energy {final.kinetic_energy:.3g} J{amount}"
+        f"runout {final.runout:.4f} m, height {final.height:.4f} m, centre of mass "
+        f"{in_digits(final.center_of_mass_height)} m, kinetic energy {final.kinetic_energy:.3g} J{amount}"
     )
     if summary.points_left > 0:
         all_of_it = ": nothing is left" if summary.points_left == summary.points else ""

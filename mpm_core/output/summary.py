@@ -24,6 +24,11 @@ class FinalState(BaseModel):
     kinetic_energy: FiniteFloat
 
 
+def in_digits(length: float | None) -> str:
+    """A length [m] as tables show it; a dash for one that there is not."""
+    return "-" if length is None else f"{length:.4f}"
+
+
 class RunSummary(BaseModel):
     """One run: times in seconds, memory in bytes, `energy_balance_error` relative to the energy that was released.
 

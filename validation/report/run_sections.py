@@ -7,6 +7,7 @@ from pathlib import Path
 from grainlaw.mpm_core.output.history import energy_unit
 from grainlaw.mpm_core.output.pictures import draw_history, write_run_pictures
 from grainlaw.mpm_core.output.run_folder import SCENE_NAME, RunFolder
+from grainlaw.mpm_core.output.summary import in_digits
 from grainlaw.validation.report.page import Picture, Section, Table
 from grainlaw.validation.report.plots import embedded
 
@@ -45,7 +46,7 @@ def _row(name: str, run: RunFolder) -> tuple[str, ...]:
         f"{summary.simulated_time:.3g}",
         f"{final.runout:.4f}",
         f"{final.height:.4f}",
-        "" if final.center_of_mass_height is None else f"{final.center_of_mass_height:.4f}",
+        in_digits(final.center_of_mass_height),
         f"{final.kinetic_energy:.3g} {energy_unit(run.space)}",
         f"{summary.energy_balance_error:.1e}",
         f"{summary.wall_time:.1f}",
