@@ -112,33 +112,6 @@ def test_sides_are_open_in_every_space(space):
     assert abs(balance(case)) < 5e-3
 
 
-def test_points_that_sleep_stay_asleep_where_others_leave():
-    case = simulation(
-        SLIDING,
-        {
-            "sleep": {"speed": 2e-3, "window": 0.02},
-            "grid.upper": [1.0, 0.5],
-            "body": [
-                {**SLIDING["body"][0], "shape": {"kind": "rectangle", "lower": [0.7, 0.0], "upper": [0.975, 0.1]}},
-                {
-                    **SLIDING["body"][0],
-                    "velocity": [0.0, 0.0],
-                    "shape": {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [0.3, 0.05]},
-                    "initial_stress": {"kind": "geostatic"},
-                },
-            ],
-        },
-    )
-    _, resting = case.bodies
-    case.advance_to(0.2)
-    assert case.ledger.mass_left > 0.0
-    assert resting.awake < resting.count
-    assert sorted(resting.ids) == list(range(resting.first_id, resting.first_id + resting.count))
-    held = case.sleep.nodes.sum()
-    case.sleep.bring_sleepers()
-    assert case.sleep.nodes.sum() == held
-
-
 def test_a_run_that_loses_everything_ends_well_and_resumes_to_the_same_bits(tmp_path):
     whole, half = tmp_path / "whole", tmp_path / "half"
     summary = run(Scene.from_dict(FALLING), whole)
