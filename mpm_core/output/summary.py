@@ -44,8 +44,8 @@ class RunSummary(BaseModel):
     cells: NonNegativeInt
     steps: NonNegativeInt
     simulated_time: FiniteFloat
-    mass_left: FiniteFloat
-    points_left: NonNegativeInt
+    mass_left: FiniteFloat = 0.0
+    points_left: NonNegativeInt = 0
     wall_time: FiniteFloat
     compile_time: FiniteFloat
     point_steps_per_second: FiniteFloat
