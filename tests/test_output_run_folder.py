@@ -20,6 +20,8 @@ SUMMARY = {
     "cells": 131072,
     "steps": 1000,
     "simulated_time": 1.5,
+    "mass_left": 0.0,
+    "points_left": 0,
     "wall_time": 12.5,
     "compile_time": 3.0,
     "point_steps_per_second": 2.0e7,
