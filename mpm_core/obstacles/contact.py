@@ -35,7 +35,7 @@ from grainlaw.mpm_core.kernels.positions import position_access
 from grainlaw.mpm_core.kernels.shape_functions import Basis, make_stencil
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
 from grainlaw.mpm_core.obstacles.impulses import make_solve
-from grainlaw.mpm_core.obstacles.obstacle import Obstacle, as_rows
+from grainlaw.mpm_core.obstacles.obstacle import Obstacle, as_rows, put_pose
 from grainlaw.mpm_core.obstacles.surface import distance_in_frame
 from grainlaw.mpm_core.space import Space
 
@@ -106,7 +106,7 @@ class ObstacleContact:
         self.bodies = bodies
         self.grid = grid
         self.basis = basis
-        rows, numbers = as_rows(obstacles)
+        self._rows, self._numbers = rows, numbers = as_rows(obstacles)
         reach = (IN_REACH + margin) * grid.cell_size
         self.pairs = [
             _make_find_pairs(body.space, body.precision)(body.storage, body.awake, rows, numbers, *_size(body), reach)
@@ -118,7 +118,10 @@ class ObstacleContact:
 
     def apply(self, dt: float) -> TakenByObstacles:
         """Apply contact to the new velocities of the nodes in a step of dt [s]."""
-        grid, (rows, numbers), count = self.grid, as_rows(self.obstacles), 0
+        grid, rows, numbers, count = self.grid, self._rows, self._numbers, 0
+        for row, obstacle in zip(rows, self.obstacles, strict=True):
+            if not obstacle.motion.is_fixed:
+                put_pose(row, obstacle.motion.pose)
         impulses = np.zeros((len(self.obstacles), 6))
         for body, pairs in zip(self.bodies, self.pairs, strict=True):
             if len(pairs) > 0:

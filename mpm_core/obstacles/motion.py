@@ -54,6 +54,11 @@ class Motion(ABC):
         return True
 
     @property
+    def is_fixed(self) -> bool:
+        """Whether it never moves."""
+        return False
+
+    @property
     def state(self) -> Floats:
         """All that changes, for a checkpoint, shape (21,)."""
         pose = self.pose
@@ -87,19 +92,30 @@ class Steady(Motion):
         """Whether it has a velocity or a spin."""
         return bool(self.frame_velocity.any() or self.pose.spin.any())
 
+    @property
+    def is_fixed(self) -> bool:
+        """Whether it rests."""
+        return not (self.frame_velocity.any() or self.pose.spin.any())
+
     def before(self, time: float, dt: float) -> None:
         """The frame moves with the centre, and around it, by half of the turn of the step."""
+        if not self.pose.spin.any():
+            self.pose.velocity = self.frame_velocity
+            return
         half = Rotation.from_rotvec(0.5 * dt * self.pose.spin).apply(self.pose.position - self.center)
         self.pose.velocity = self.frame_velocity + np.cross(self.pose.spin, half)
 
     def after(self, dt: float, impulse: Floats, moment: Floats) -> None:
         """Exactly around the centre, so that nothing drifts outwards over many turns."""
+        if not self.pose.spin.any():
+            self.pose.position = self.pose.position + dt * self.frame_velocity
+            self.center = self.center + dt * self.frame_velocity
+            return
         turn = Rotation.from_rotvec(dt * self.pose.spin)
         arm = turn.apply(self.pose.position - self.center)
         self.center = self.center + dt * self.frame_velocity
         self.pose.position = self.center + arm
-        if self.pose.spin.any():
-            self.pose.rotation = turn.as_matrix() @ self.pose.rotation
+        self.pose.rotation = turn.as_matrix() @ self.pose.rotation
 
 
 class Along(Motion):

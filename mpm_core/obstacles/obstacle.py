@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from grainlaw.mpm_core.obstacles.motion import Motion
+from grainlaw.mpm_core.obstacles.motion import Motion, Pose
 from grainlaw.mpm_core.obstacles.surface import Surface
 
 Floats = NDArray[np.float64]
@@ -102,11 +102,16 @@ def as_rows(obstacles: Sequence[Obstacle]) -> tuple[NDArray[np.void], Floats]:
     """Obstacles as `OBSTACLE`, and the numbers of all their surfaces."""
     rows, start = np.zeros(len(obstacles), OBSTACLE), 0
     for row, obstacle in zip(rows, obstacles, strict=True):
-        surface, pose = obstacle.surface, obstacle.motion.pose
+        surface = obstacle.surface
         row["kind"], row["start"], row["end"] = surface.kind, start, start + len(surface.numbers)
         row["radius"], row["friction"] = surface.radius, obstacle.friction
         row["sign"] = -1.0 if obstacle.hollow else 1.0
-        row["position"], row["rotation"] = pose.position, pose.rotation.ravel()
-        row["velocity"], row["spin"] = pose.velocity, pose.spin
+        put_pose(row, obstacle.motion.pose)
         start += len(surface.numbers)
     return rows, np.concatenate([np.empty(0), *(obstacle.surface.numbers for obstacle in obstacles)])
+
+
+def put_pose(row: np.void, pose: Pose) -> None:
+    """Store where an obstacle is and how it moves in its row."""
+    row["position"], row["rotation"] = pose.position, pose.rotation.ravel()
+    row["velocity"], row["spin"] = pose.velocity, pose.spin
