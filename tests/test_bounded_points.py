@@ -10,6 +10,7 @@ from grainlaw.materials import get_material
 from grainlaw.materials.declarations import DeclarationError
 from grainlaw.materials.law import check_law
 from grainlaw.mpm_core.output.bounded_points import limited
+from grainlaw.mpm_core.space import PLANE_STRAIN
 
 
 @pytest.mark.parametrize("name", ["modified_cam_clay", "mu_i_mcc"])
@@ -20,7 +21,8 @@ def test_points_at_the_smallest_yield_surface_are_counted(name, precision):
     states = np.zeros((len(law.state._fields), 4), precision)
     states[law.state._fields.index("preconsolidation_pressure")] = [0.1, 0.1001, 0.08, 1e3]
     body = SimpleNamespace(law=law, parameters=parameters, states=states, stress=np.ones((4, 4)), count=4)
-    simulation = SimpleNamespace(bodies=[body], periodic_axes=(0, 1), grid=None, ways_bounded=0)
+    grid = SimpleNamespace(space=PLANE_STRAIN)
+    simulation = SimpleNamespace(bodies=[body], periodic_axes=(0, 1), grid=grid, ways_bounded=0)
     assert limited(simulation)["points_at_a_bound_of_their_law"] == 2
 
 

@@ -12,7 +12,8 @@ from grainlaw.mpm_core.space import PLANE_STRAIN
 def body(x, y, point_mass=2.0, density=1000.0):
     places = np.array([x, y], dtype=float)
     masses = np.full(places.shape[1], point_mass)
-    return SimpleNamespace(positions=places, masses=masses, initial_density=density, space=PLANE_STRAIN)
+    count = len(masses)
+    return SimpleNamespace(positions=places, count=count, masses=masses, initial_density=density, space=PLANE_STRAIN)
 
 
 def evenly(count, width=1.0, height=0.5, **keywords):

@@ -92,7 +92,7 @@ def test_places_are_kept_to_fourteen_digits(precision):
     body = simulation(BLOCK, {"precision": precision}).bodies[0]
     places = body.positions + np.random.default_rng(1).normal(size=(2, body.count))
     body.positions = places
-    np.testing.assert_allclose(positions_of(body.points), places, rtol=1e-14, atol=1e-14)
+    np.testing.assert_allclose(positions_of(body.points, body.space), places, rtol=1e-14, atol=1e-14)
 
 
 @pytest.mark.parametrize("precision", PRECISIONS)

@@ -1,6 +1,7 @@
 """What bounds a step: the stability of a single point, contact, strain, and a floor at which runs stop."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from scenes_for_tests import BLOCK, CAM_CLAY, ELASTIC, simulation
 
 from grainlaw.materials import InputError, SimulationError, get_material
 from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.space import AXISYMMETRIC, PLANE_STRAIN, THREE_D
 from grainlaw.mpm_core.stepping.run import run
 from grainlaw.mpm_core.stepping.time_step import LARGEST_STRAIN, SMALLEST_SHARE, signal_bounds
 
@@ -42,13 +44,17 @@ def test_the_stable_step_is_the_limit_of_a_single_point(poisson_ratio, place):
 
 
 def test_the_grid_is_stiffer_than_a_wave_by_what_the_law_says():
-    elastic = get_material("linear_elastic")
+    def bounds(name, parameters, space=PLANE_STRAIN):
+        law = get_material(name)
+        parameters = law.parameters(*parameters)
+        return signal_bounds(SimpleNamespace(law=law, parameters=parameters, initial_density=1000.0, space=space))
+
     for ratio, expected in ((0.0, 1.0), (0.2, 1.25), (0.3, 10.0 / 7.0)):
-        found = signal_bounds(elastic, elastic.parameters(1e6, ratio), 1000.0)
+        found = bounds("linear_elastic", (1e6, ratio))
         assert found.wave_factor**2 == pytest.approx(expected, rel=1e-6)
         assert found.contact_speed == 0.0
-    newtonian = get_material("newtonian")
-    assert signal_bounds(newtonian, newtonian.parameters(1.0, 1e5), 1000.0).wave_factor == pytest.approx(2.0**0.5)
+    for space, stiffest in ((PLANE_STRAIN, 2.0), (AXISYMMETRIC, 3.0), (THREE_D, 3.0)):
+        assert bounds("newtonian", (1.0, 1e5), space).wave_factor == pytest.approx(stiffest**0.5)
 
 
 def oscillation(viscosity, bulk_modulus, share, steps=40):
