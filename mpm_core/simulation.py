@@ -5,6 +5,7 @@ import time
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from grainlaw.materials import InputError, SimulationError
 from grainlaw.materials.errors import numbers_of
@@ -153,20 +154,21 @@ class Simulation:
         """Solve the momentum equation on the nodes, then walls, held nodes and sleepers have their say."""
         kick = 0.5 * (self.last_step + dt)
         update_nodes(self.grid, self.active, self.scene.gravity, kick, couples_volumes)
-        self._hold_at_walls(dt)
+        clearances = self.wall_clearance.clearances()
+        self._hold_at_walls(dt, clearances)
         if self.obstacles.present:
-            self._touch_obstacles(dt)
+            self._touch_obstacles(dt, clearances)
         hold_nodes(self.grid, self.held_nodes)
         if self.sleep is not None:
             self.sleep.hold(self.active)
 
-    def _hold_at_walls(self, dt: float) -> None:
-        taken = hold_at_walls(self.grid, self.wall_clearance.layers, self.wall_clearance.clearances(), dt)
+    def _hold_at_walls(self, dt: float, clearances: NDArray[np.float64]) -> None:
+        taken = hold_at_walls(self.grid, self.wall_clearance.layers, clearances, dt)
         self.ledger.wall_work += taken.work
         self.ledger.wall_friction += taken.friction
 
-    def _touch_obstacles(self, dt: float) -> None:
-        taken = self.obstacles.apply(self.time, dt, lambda: self._hold_at_walls(dt))
+    def _touch_obstacles(self, dt: float, clearances: NDArray[np.float64]) -> None:
+        taken = self.obstacles.apply(self.time, dt, lambda: self._hold_at_walls(dt, clearances))
         if taken is not None:
             self.ledger.obstacle_work += taken.work
             self.ledger.obstacle_friction += taken.friction
@@ -252,7 +254,7 @@ class Simulation:
     def _clear_nodes(self, couples_volumes: bool) -> None:
         """Leave on the nodes only what sleeping points bring."""
         if self.sleep is not None and self.sleep.has_sleepers:
-            self.sleep.lay_on_grid(self.active)
+            self.sleep.lay_on_grid(self.active, couples_volumes)
         else:
             clear_nodes(self.grid.nodes, self.grid, self.active)
             if couples_volumes:

@@ -33,11 +33,17 @@ class Pose:
             self.rotation = Rotation.from_rotvec(dt * self.spin).as_matrix() @ self.rotation
 
 
+def in_3d(vector: Sequence[float] | Floats | None) -> Floats:
+    """A vector of two or three components as one of three; zero for none."""
+    whole = np.zeros(3)
+    if vector is not None:
+        whole[: len(vector)] = vector
+    return whole
+
+
 def at_rest(position: Sequence[float] | Floats, rotation: Floats | None = None) -> Pose:
     """A pose without motion; `position` may have two components."""
-    there = np.zeros(3)
-    there[: len(position)] = position
-    return Pose(there, np.eye(3) if rotation is None else rotation, np.zeros(3), np.zeros(3))
+    return Pose(in_3d(position), np.eye(3) if rotation is None else rotation, np.zeros(3), np.zeros(3))
 
 
 class Motion(ABC):

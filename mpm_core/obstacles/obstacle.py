@@ -19,7 +19,6 @@ OBSTACLE = np.dtype(
         ("kind", np.int64),
         ("start", np.int64),
         ("end", np.int64),
-        ("radius", np.float64),
         ("sign", np.float64),
         ("friction", np.float64),
         ("position", np.float64, 3),
@@ -39,17 +38,13 @@ class Forces:
     duration: float = 0.0
 
     def reset(self) -> None:
-        """Begin again."""
+        """Forget what acted so far."""
         self.impulse, self.moment, self.duration = np.zeros(3), np.zeros(3), 0.0
 
     def means(self) -> tuple[Floats, Floats]:
         """Mean force [N] and torque [N m] about the obstacle's position, both of three components."""
         over = self.duration if self.duration > 0.0 else 1.0
         return self.impulse / over, self.moment / over
-
-    def begin_anew(self) -> None:
-        """Forget what acted so far."""
-        self.impulse, self.moment, self.duration = np.zeros(3), np.zeros(3), 0.0
 
 
 @dataclass
@@ -104,8 +99,7 @@ def as_rows(obstacles: Sequence[Obstacle]) -> tuple[NDArray[np.void], Floats]:
     for row, obstacle in zip(rows, obstacles, strict=True):
         surface = obstacle.surface
         row["kind"], row["start"], row["end"] = surface.kind, start, start + len(surface.numbers)
-        row["radius"], row["friction"] = surface.radius, obstacle.friction
-        row["sign"] = -1.0 if obstacle.hollow else 1.0
+        row["friction"], row["sign"] = obstacle.friction, -1.0 if obstacle.hollow else 1.0
         put_pose(row, obstacle.motion.pose)
         start += len(surface.numbers)
     return rows, np.concatenate([np.empty(0), *(obstacle.surface.numbers for obstacle in obstacles)])

@@ -66,7 +66,7 @@ class ForcesWriter(RowsWriter):
             ):
                 for name, value in zip(names, values.tolist(), strict=False):
                     row[f"{obstacle.name}_{name}"] = value
-            obstacle.forces.begin_anew()
+            obstacle.forces.reset()
         self.append(row)
 
 

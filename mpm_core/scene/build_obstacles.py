@@ -11,7 +11,7 @@ from grainlaw.materials import InputError
 from grainlaw.materials.errors import InputWarning
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.obstacles.contact import distances
-from grainlaw.mpm_core.obstacles.motion import Along, Free, Motion, Steady, at_rest
+from grainlaw.mpm_core.obstacles.motion import Along, Free, Motion, Steady, at_rest, in_3d
 from grainlaw.mpm_core.obstacles.obstacle import Obstacle
 from grainlaw.mpm_core.scene.initial_state import spacing_of_points
 from grainlaw.mpm_core.scene.model import Scene
@@ -53,14 +53,14 @@ def _motion(scene: Scene, section: ObstacleSection, found: Placed) -> Motion:
         return _along(section.motion, found)
     if section.free is not None:
         return _free(scene, section.free, found)
-    velocity, center = _in_3d(section.velocity), found.position
+    velocity, center = in_3d(section.velocity), found.position
     if section.center is not None:
-        center = _in_3d(section.center)
+        center = in_3d(section.center)
     return Steady(pose, velocity, _spin(section.angular_velocity), center)
 
 
 def _along(table: MotionSection, found: Placed) -> Motion:
-    ways = np.array([_in_3d(way) for way in table.displacement or ()])
+    ways = np.array([in_3d(way) for way in table.displacement or ()])
     angles = np.array(table.angle or [0.0] * len(ways))
     turns = Rotation.from_rotvec(np.outer(angles, [0.0, 0.0, 1.0])) * Rotation.from_matrix(found.rotation)
     return Along(np.array(table.time or ()), found.position + ways, turns)
@@ -69,21 +69,14 @@ def _along(table: MotionSection, found: Placed) -> Motion:
 def _free(scene: Scene, section: FreeSection, found: Placed) -> Motion:
     space = scene.in_space
     pose = at_rest(found.position, found.rotation)
-    pose.velocity, pose.spin = _in_3d(section.velocity), _spin(section.angular_velocity)
+    pose.velocity, pose.spin = in_3d(section.velocity), _spin(section.angular_velocity)
     density = section.density or (section.mass or 0.0) / found.volume
     is_free = np.zeros(6, np.bool_)
     is_free[: space.axes] = True
     is_free[0] = not space.hoop
     if section.turns and not space.hoop:
         is_free[3:] = True if space.axes == 3 else [False, False, True]
-    return Free(pose, density * found.volume, density * found.inertia, _in_3d(scene.gravity), is_free)
-
-
-def _in_3d(vector: Sequence[float] | None) -> Floats:
-    whole = np.zeros(3)
-    if vector is not None:
-        whole[: len(vector)] = vector
-    return whole
+    return Free(pose, density * found.volume, density * found.inertia, in_3d(scene.gravity), is_free)
 
 
 def _spin(given: float | tuple[float, ...]) -> Floats:

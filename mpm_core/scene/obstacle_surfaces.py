@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from grainlaw.mpm_core.obstacles import surface as surfaces
+from grainlaw.mpm_core.obstacles.motion import in_3d
 from grainlaw.mpm_core.obstacles.surface import Surface
 from grainlaw.mpm_core.scene.mesh_region import MeshRegion
 from grainlaw.mpm_core.scene.model import GridSection
@@ -90,9 +91,7 @@ def _mass_properties(triangles: Floats) -> tuple[float, Floats, Floats]:
 
 
 def _placed(surface: Surface, center: tuple[float, ...], volume: float, inertia: float | Floats) -> Placed:
-    position = np.zeros(3)
-    position[: len(center)] = center
-    return Placed(surface, position, np.eye(3), volume, np.broadcast_to(inertia, 3).astype(np.float64))
+    return Placed(surface, in_3d(center), np.eye(3), volume, np.broadcast_to(inertia, 3).astype(np.float64))
 
 
 def _polygon(corners: Floats) -> Placed:
@@ -110,13 +109,11 @@ def _polygon(corners: Floats) -> Placed:
 
 def _plane(shape: Plane) -> Placed:
     normal = np.array(shape.normal) / np.linalg.norm(shape.normal)
-    position = np.zeros(3)
-    position[: len(shape.point)] = shape.point
     if len(normal) == 2:
         rotation = np.array([[normal[1], normal[0], 0.0], [-normal[0], normal[1], 0.0], [0.0, 0.0, 1.0]])
     else:
         rotation = _turned_up(normal)
-    return Placed(surfaces.half_space(), position, rotation, np.inf, np.full(3, np.inf))
+    return Placed(surfaces.half_space(), in_3d(shape.point), rotation, np.inf, np.full(3, np.inf))
 
 
 def _turned_up(direction: Floats) -> Floats:

@@ -100,11 +100,11 @@ class Sleep:
         for body, positions in zip(self.bodies, self.positions, strict=True):
             positions[:, body.ids - body.first_id] = body.positions
 
-    def lay_on_grid(self, active: ActiveNodes) -> None:
-        """Let the active nodes start from what the sleeping points bring."""
+    def lay_on_grid(self, active: ActiveNodes, couples_volumes: bool) -> None:
+        """Let the active nodes start from what the sleeping points bring; to couple volumes also those."""
         column = self.grid.shape[-1]
         copy_nodes(self.nodes, self.grid.nodes, COMPONENTS, column, active.columns)
-        if len(self.bulk) > 0:
+        if couples_volumes and len(self.bulk) > 0:
             copy_nodes(self.bulk, self.grid.bulk, BULK_COMPONENTS, column, active.columns)
 
     def hold(self, active: ActiveNodes) -> None:
