@@ -355,11 +355,9 @@ class Simulation:
         )
 
     def _refuse_lost_points(self, report: StepReport) -> None:
-        for axis, (lowest, highest) in enumerate(zip(report.lowest, report.highest, strict=True)):
-            below, above = self.grid.open_sides[axis]
-            lower = -math.inf if below else self.grid.lower[axis]
-            upper = math.inf if above else self.grid.upper[axis]
-            if (lowest < lower or highest > upper) and axis not in self.periodic_axes:
+        extents = zip(report.lowest, report.highest, self.grid.limits, strict=True)
+        for axis, (lowest, highest, (lower, upper)) in enumerate(extents):
+            if lowest < lower or highest > upper:
                 raise failure_outside(self._when, self.bodies, axis, lower, upper)
 
 

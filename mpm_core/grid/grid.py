@@ -72,8 +72,11 @@ class Grid:
         self.cell_size = cell_size
         self.upper = tuple(low + count * cell_size for low, count in zip(lower, cells, strict=True))
         self.shape = tuple(count + 1 + 2 * GHOSTS for count in cells)
+        # distance between neighbouring nodes along each axis, in nodes
+        self.strides = tuple(math.prod(self.shape[axis + 1 :]) for axis in range(space.axes))
         self.precision = precision
         self.open_sides = tuple(open_sides) or ((False, False),) * space.axes
+        self.limits = tuple(self._limits(axis, periodic_axes) for axis in range(space.axes))
         self.components = NODE_OF[space.axes]
         self.nodes = self.empty_nodes()
         self.bulk = self.empty_bulk()
@@ -91,16 +94,16 @@ class Grid:
         nodes = math.prod(self.shape) if self.space.axes == 3 else 0
         return _aligned_zeros(nodes * BULK_COMPONENTS, PRECISIONS[self.precision])
 
+    def _limits(self, axis: int, periodic_axes: Sequence[int]) -> tuple[float, float]:
+        """Between which coordinates along an axis points have to be [m]; infinite where they may leave."""
+        below, above = (True, True) if axis in periodic_axes else self.open_sides[axis]
+        return -math.inf if below else self.lower[axis], math.inf if above else self.upper[axis]
+
     def _ghosts(self, axis: int, periodic_axes: Sequence[int]) -> tuple[int, int]:
         walls = GHOSTS - 1, GHOSTS + self.cells[axis] + 1
         without = (True, True) if axis in periodic_axes else self.open_sides[axis]
         low, high = (NO_GHOSTS[end] if without[end] else walls[end] for end in (0, 1))
         return low, high
-
-    @property
-    def strides(self) -> tuple[int, ...]:
-        """Distance between neighbouring nodes along each axis, in nodes."""
-        return tuple(math.prod(self.shape[axis + 1 :]) for axis in range(self.space.axes))
 
     @property
     def columns(self) -> int:

@@ -17,9 +17,6 @@ from grainlaw.mpm_core.kernels.stress_update import (
     MAX_SIGNAL_SPEED,
 )
 
-# What the G2P reports for each axis, in this order.
-_EXTREMES_AND_MOMENTUM = (LOWEST, HIGHEST, MOMENTUM)
-
 
 class StepReport(NamedTuple):
     """A step of a body, or of several; energies and momenta in the amounts of the space.
@@ -50,17 +47,9 @@ def step_report(transfer: NDArray[np.float64], stress: NDArray[np.float64]) -> S
     axes = (transfer.shape[1] - OF_AXES) // PER_AXIS
     if len(stress) == 0:
         return StepReport((math.inf,) * axes, (-math.inf,) * axes, (0.0,) * axes, *([0.0] * 6))
-    lowest, highest, momentum = (
-        [OF_AXES + PER_AXIS * axis + which for axis in range(axes)] for which in _EXTREMES_AND_MOMENTUM
-    )
-    return StepReport(
-        tuple(transfer[:, lowest].min(axis=0).tolist()),
-        tuple(transfer[:, highest].max(axis=0).tolist()),
-        tuple(transfer[:, momentum].sum(axis=0).tolist()),
-        float(transfer[:, KINETIC_ENERGY].sum()),
-        float(transfer[:, MAX_SPEED].max()),
-        *_combined(stress),
-    )
+    combined = _combined(transfer, stress, axes).tolist()
+    lowest, highest, momentum = (tuple(combined[axes * which : axes * (which + 1)]) for which in range(3))
+    return StepReport(lowest, highest, momentum, *combined[3 * axes :])
 
 
 def together(reports: list[StepReport]) -> StepReport:
@@ -83,7 +72,8 @@ def together(reports: list[StepReport]) -> StepReport:
 
 @njit(cache=True)
 @named(CORE_MARK)
-def _combined(stress):  # type: ignore[no-untyped-def]
+def _combined(transfer, stress, axes):  # type: ignore[no-untyped-def]
+    """The numbers of a report one after another, the first three for each axis."""
     increment, signal_speed, diffusivity = 0.0, 0.0, 0.0
     for block in range(len(stress)):
         # not less, rather than greater: NaN has to come through
@@ -95,4 +85,18 @@ def _combined(stress):  # type: ignore[no-untyped-def]
             diffusivity = stress[block, MAX_DIFFUSIVITY]
         if np.isnan(increment) or np.isnan(signal_speed) or np.isnan(diffusivity):
             break
-    return stress[:, INTERNAL_WORK].sum(), signal_speed, increment, diffusivity
+    combined = np.empty(3 * axes + 6)
+    for axis in range(axes):
+        first = OF_AXES + PER_AXIS * axis
+        combined[axis] = transfer[:, first + LOWEST].min()
+        combined[axes + axis] = transfer[:, first + HIGHEST].max()
+        combined[2 * axes + axis] = transfer[:, first + MOMENTUM].sum()
+    combined[3 * axes :] = (
+        transfer[:, KINETIC_ENERGY].sum(),
+        transfer[:, MAX_SPEED].max(),
+        stress[:, INTERNAL_WORK].sum(),
+        signal_speed,
+        increment,
+        diffusivity,
+    )
+    return combined

@@ -16,7 +16,7 @@ a wall before the next sort is found again from where they are, so that a checkp
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from typing import Any
 
@@ -66,6 +66,7 @@ class WallClearance:
         self.near = [self._near(body) for body in bodies]
         largest = max(math.prod(grid.shape) // nodes for nodes in grid.shape)
         self._clearances_of_threads = np.empty((threads, len(layers), largest))
+        self._joined = list(self._across_periodic_axes())
 
     def _near(self, body: Body) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Numbers of the points of a body near each layer, one layer after another, and where those of each begin."""
@@ -93,13 +94,18 @@ class WallClearance:
                 points = body.storage, body.point_mass, body.initial_density
                 on_grid = grid.origin, grid.cell_size, grid.shape, basis.offset, basis.width
                 narrow(near, starts, self.layers, *points, *on_grid, of_threads)
-        clearances: NDArray[np.float64] = of_threads[0]
-        for number, layer in enumerate(self.layers):
-            along = axes_along(int(layer["axis"]), grid.space.axes)
+        for clearances, cells in self._joined:
+            self._join(clearances, cells)
+        of_all: NDArray[np.float64] = of_threads[0]
+        return of_all
+
+    def _across_periodic_axes(self) -> Iterator[tuple[NDArray[np.float64], int]]:
+        """Clearances of layers along periodic axes, those first, and the cells of each such axis."""
+        for clearances, layer in zip(self._clearances_of_threads[0], self.layers, strict=True):
+            along = axes_along(int(layer["axis"]), self.grid.space.axes)
             for place, axis in enumerate(along):
                 if axis in self.periodic_axes:
-                    self._join(np.moveaxis(self._of_layer(clearances[number], along), place, 0), grid.cells[axis])
-        return clearances
+                    yield np.moveaxis(self._of_layer(clearances, along), place, 0), self.grid.cells[axis]
 
     def _of_layer(self, clearances: NDArray[np.float64], along: tuple[int, ...]) -> NDArray[np.float64]:
         """Clearances of a layer, as many axes as there are along it."""

@@ -32,12 +32,8 @@ def _without_stress(body: Body) -> int:
 
 def _at_walls(simulation: Simulation, body: Body) -> int:
     grid, near = simulation.grid, np.zeros(body.count, np.bool_)
-    for axis in range(grid.space.axes):
-        if axis not in simulation.periodic_axes:
-            coordinate, (below, above) = body.points[axis], grid.open_sides[axis]
-            from_lower = np.inf if below else coordinate - grid.lower[axis]
-            from_upper = np.inf if above else grid.upper[axis] - coordinate
-            near |= np.minimum(from_lower, from_upper) < SMALLEST_MOMENT_AT_WALL * grid.cell_size
+    for coordinate, (lower, upper) in zip(body.positions, grid.limits, strict=True):
+        near |= np.minimum(coordinate - lower, upper - coordinate) < SMALLEST_MOMENT_AT_WALL * grid.cell_size
     return int(near.sum())
 
 
