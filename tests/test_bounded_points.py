@@ -9,6 +9,7 @@ import pytest
 from grainlaw.materials import get_material
 from grainlaw.materials.declarations import DeclarationError
 from grainlaw.materials.law import check_law
+from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.output.bounded_points import limited
 from grainlaw.mpm_core.space import PLANE_STRAIN
 
@@ -20,9 +21,11 @@ def test_points_at_the_smallest_yield_surface_are_counted(name, precision):
     parameters = law.parameter_sets["paper"].parameters._replace(stress_free_pressure=0.05)
     states = np.zeros((len(law.state._fields), 4), precision)
     states[law.state._fields.index("preconsolidation_pressure")] = [0.1, 0.1001, 0.08, 1e3]
-    body = SimpleNamespace(law=law, parameters=parameters, states=states, stress=np.ones((4, 4)), count=4)
-    grid = SimpleNamespace(space=PLANE_STRAIN)
-    simulation = SimpleNamespace(bodies=[body], periodic_axes=(0, 1), grid=grid, ways_bounded=0)
+    body = SimpleNamespace(
+        law=law, parameters=parameters, states=states, stress=np.ones((4, 4)), count=4, positions=np.ones((2, 4))
+    )
+    grid = Grid(PLANE_STRAIN, (0.0, 0.0), (4, 4), 1.0)
+    simulation = SimpleNamespace(bodies=[body], grid=grid, ways_bounded=0)
     assert limited(simulation)["points_at_a_bound_of_their_law"] == 2
 
 
