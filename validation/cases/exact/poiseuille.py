@@ -5,16 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from grainlaw.validation.scenes import advance, simulation_of
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement
+from grainlaw.validation.cases.exact.viscous_flow import ViscousFlow
 
-BAND = 2e-2
 HEIGHT, DENSITY, VISCOSITY, BULK_MODULUS, PRESSURE = 1.0, 1000.0, 100.0, 1e5, 1e4
 ACCELERATION = 0.01
 CELLS = {Effort.QUICK: (20,), Effort.FULL: (10, 20, 40)}
 # The slowest mode decays over rho H^2/(pi^2 eta) = 1.01 s.
 TIMES = {"start": 0.3, "steady": 6.0}
-LEAST_ORDER = 1.8
 # Terms of the series, beyond which it is below 1e-6 at the first time.
 TERMS = 15
 
@@ -50,59 +48,19 @@ def scene(cells: int, viscosity: float) -> dict[str, Any]:
     }
 
 
-def profiles(cells: int, viscosity: float = VISCOSITY) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Heights [m] and velocities [m/s] of the points at each of the times."""
-    simulation = simulation_of(scene(cells, viscosity))
-    body, found = simulation.bodies[0], {}
-    for name, time in TIMES.items():
-        advance(simulation, time)
-        found[name] = body.positions[1].copy(), body.velocity[0].copy()
-    return found
-
-
-def error(name: str, profile: tuple[np.ndarray, np.ndarray]) -> float:
-    """Largest error of the points' velocity over the largest velocity at that time."""
-    y, v = profile
-    largest = float(exact_velocity(0.5 * HEIGHT, TIMES[name]))
-    return float(np.abs(v - exact_velocity(y, TIMES[name])).max()) / largest
-
-
-def measurements(found: dict[str, tuple[np.ndarray, np.ndarray]]) -> tuple[Measurement, ...]:
-    """The profile at both times."""
-    return tuple(
-        upper_bound(f"t = {TIMES[name]:g} s: largest error of the profile", "1", error(name, profile), BAND)
-        for name, profile in found.items()
-    )
+FLOW = ViscousFlow(
+    scene, exact_velocity, TIMES, across=1, width=HEIGHT, fastest=0.5 * HEIGHT, place=("height", "between the plates")
+)
 
 
 def measure(effort: Effort) -> Evidence:
     """The layer on ever finer grids."""
-    results = {cells: profiles(cells) for cells in CELLS[effort]}
-    finest = results[CELLS[effort][-1]]
-    z = np.linspace(0.0, HEIGHT, 60)
-    curves = []
-    for name, (y, v) in finest.items():
-        order = np.argsort(y)[:: max(1, len(y) // 40)]
-        curves.append(curve(f"exact, {TIMES[name]:g} s", exact_velocity(z, TIMES[name]), z, "reference"))
-        curves.append(curve(f"measured, {TIMES[name]:g} s", v[order], y[order]))
-    figure = Figure("Velocity between the plates", "velocity [m/s]", "height [m]", tuple(curves))
-    convergence = tuple(
-        Convergence(
-            f"profile at {TIMES[name]:g} s",
-            "cell size",
-            tuple(HEIGHT / cells for cells in results),
-            tuple(error(name, found[name]) for found in results.values()),
-            LEAST_ORDER,
-        )
-        for name in TIMES
-        if len(results) > 1
-    )
-    return Evidence(measurements(finest), convergence, (figure,))
+    return FLOW.evidence({cells: FLOW.profiles(cells, VISCOSITY) for cells in CELLS[effort]})
 
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """The convention s = eta D_d, in which eta counts half of the velocity gradient."""
-    return measurements(profiles(CELLS[Effort.QUICK][0], 0.5 * VISCOSITY))
+    return FLOW.measurements(FLOW.profiles(CELLS[Effort.QUICK][0], 0.5 * VISCOSITY))
 
 
 CASE = Case(

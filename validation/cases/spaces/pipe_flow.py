@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from scipy.special import j0, j1, jn_zeros
 
-from grainlaw.validation.case import Case, Convergence, Effort, Evidence, Figure, Measurement, curve, upper_bound
-from grainlaw.validation.scenes import advance, block, simulation_of
+from grainlaw.validation.case import Case, Effort, Evidence, Measurement
+from grainlaw.validation.cases.exact.viscous_flow import ViscousFlow
+from grainlaw.validation.scenes import block
 
-BAND, LEAST_ORDER = 2e-2, 1.8
 RADIUS, DENSITY, VISCOSITY, BULK_MODULUS, PRESSURE = 1.0, 1000.0, 200.0, 1e5, 1e4
 ACCELERATION = 0.02
 CELLS = {Effort.QUICK: (10,), Effort.FULL: (10, 20, 40)}
@@ -51,59 +51,17 @@ def scene(cells: int, viscosity: float) -> dict[str, Any]:
     }
 
 
-def profiles(cells: int, viscosity: float = VISCOSITY) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Radii [m] and velocities [m/s] of the points at each of the times."""
-    simulation = simulation_of(scene(cells, viscosity))
-    body, found = simulation.bodies[0], {}
-    for name, time in TIMES.items():
-        advance(simulation, time)
-        found[name] = body.positions[0].copy(), body.velocity[1].copy()
-    return found
-
-
-def error(name: str, profile: tuple[np.ndarray, np.ndarray]) -> float:
-    """Largest error of the points' velocity over the largest velocity at that time."""
-    radius, velocity = profile
-    largest = float(exact_velocity(0.0, TIMES[name]))
-    return float(np.abs(velocity - exact_velocity(radius, TIMES[name])).max()) / largest
-
-
-def measurements(found: dict[str, tuple[np.ndarray, np.ndarray]]) -> tuple[Measurement, ...]:
-    """The profile at both times."""
-    return tuple(
-        upper_bound(f"t = {TIMES[name]:g} s: largest error of the profile", "1", error(name, profile), BAND)
-        for name, profile in found.items()
-    )
+FLOW = ViscousFlow(scene, exact_velocity, TIMES, across=0, width=RADIUS, fastest=0.0, place=("radius", "in the pipe"))
 
 
 def measure(effort: Effort) -> Evidence:
     """The pipe on ever finer grids."""
-    results = {cells: profiles(cells) for cells in CELLS[effort]}
-    finest = results[CELLS[effort][-1]]
-    radii = np.linspace(0.0, RADIUS, 60)
-    curves = []
-    for name, (radius, velocity) in finest.items():
-        order = np.argsort(radius)[:: max(1, len(radius) // 40)]
-        curves.append(curve(f"exact, {TIMES[name]:g} s", exact_velocity(radii, TIMES[name]), radii, "reference"))
-        curves.append(curve(f"measured, {TIMES[name]:g} s", velocity[order], radius[order]))
-    figure = Figure("Velocity in the pipe", "velocity [m/s]", "radius [m]", tuple(curves))
-    convergence = tuple(
-        Convergence(
-            f"profile at {TIMES[name]:g} s",
-            "cell size",
-            tuple(RADIUS / cells for cells in results),
-            tuple(error(name, found[name]) for found in results.values()),
-            LEAST_ORDER,
-        )
-        for name in TIMES
-        if len(results) > 1
-    )
-    return Evidence(measurements(finest), convergence, (figure,))
+    return FLOW.evidence({cells: FLOW.profiles(cells, VISCOSITY) for cells in CELLS[effort]})
 
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """A viscosity that is 5 % too large."""
-    return measurements(profiles(CELLS[Effort.QUICK][0], 1.05 * VISCOSITY))
+    return FLOW.measurements(FLOW.profiles(CELLS[Effort.QUICK][0], 1.05 * VISCOSITY))
 
 
 CASE = Case(
