@@ -44,6 +44,31 @@ def test_a_lone_column_next_to_the_axis_holds_at_the_default_step(cells):
     assert moved.ledger.kinetic_at_end + moved.elastic_energy() < 1.01 * start
 
 
+@pytest.mark.parametrize("poisson_ratio", [0.0, 0.1])
+def test_a_lone_point_in_the_corner_of_axis_and_wall_holds_at_the_default_step(poisson_ratio):
+    corner = {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [0.1, 0.1]}
+    alone = simulation(
+        DISC,
+        {
+            "material.linear_elastic.poisson_ratio": poisson_ratio,
+            "body.0.shape": corner,
+            "body.0.points_per_cell": 1,
+        },
+    )
+    (body,) = alone.bodies
+    assert body.count == 1
+    # where the stiffness of a point over the bound is largest
+    place = np.array([[0.0054], [0.0412 if poisson_ratio == 0.0 else 0.0054]])
+    body.points[body.layout.mass] *= place[0] / body.positions[0]
+    body.positions = place
+    body.velocity = np.array([[1e-5], [1e-5]])
+    start = 0.5 * float((body.masses * body.speed**2).sum())
+    for _ in range(300):
+        alone.step(alone.adaptive_step())
+    # so near to its limit an oscillation swells and ebbs, but does not grow
+    assert alone.ledger.kinetic_at_end + alone.elastic_energy() < 10.0 * start
+
+
 def test_a_point_on_the_axis_is_not_stretched_around_it():
     moved = column_at(0.1)
     (body,) = moved.bodies
