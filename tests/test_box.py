@@ -81,13 +81,13 @@ def test_weight_of_the_box_is_a_small_share_of_the_bulk_modulus(name):
     modulus = subject.parameters.bulk_modulus
     assert bulk_modulus(subject, subject.parameters) == pytest.approx(modulus, rel=0.01)
     scene = box(subject, subject.parameters)
-    assert -scene.gravity[1] * scene.body[0].density == pytest.approx(0.005 * modulus, rel=0.01)
+    assert -scene["gravity"][1] * scene["body"][0]["density"] == pytest.approx(0.005 * modulus, rel=0.01)
 
 
 @pytest.mark.parametrize(("name", "density"), [("mu_i_lc", 0.6 * 2450.0), ("mu_i_phi_i", 0.5434 * 2450.0)])
 def test_box_is_not_denser_than_the_grains(name, density):
     subject = Subject(get_material(name), next(iter(get_material(name).parameter_sets)), QUICK)
-    assert box(subject, subject.parameters).body[0].density == pytest.approx(density)
+    assert box(subject, subject.parameters)["body"][0]["density"] == pytest.approx(density)
 
 
 def test_law_without_an_answer_to_compression_is_refused(monkeypatch):

@@ -1,8 +1,9 @@
 """The check of a law in a box: under its own weight it stays where it is, with parameters at the ends of their bounds.
 
-A square of the material stands in a box with smooth walls, in equilibrium with its weight. Gravity is such that the
-pressure at the bottom is a small share of the bulk modulus, and the time is half of that of a free fall from the top:
-material that lost its pressure would by then have fallen by a quarter of its height.
+A square of the material, around an axis a cylinder and in three dimensions a cube, stands in a box with smooth walls,
+in equilibrium with its weight. Gravity is such that the pressure at the bottom is a small share of the bulk modulus. It
+takes half of the time of a free fall from the top: material that lost its pressure would by then have fallen by a
+quarter of its height.
 """
 
 import math
@@ -18,6 +19,8 @@ from grainlaw.materials.conformance.subject import DT, Subject
 from grainlaw.materials.errors import InputWarning
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.space import PLANE_STRAIN, Space
+from grainlaw.validation.scenes import block
 
 SIDE, CELLS = 1.0, 6
 # Of the bulk modulus.
@@ -49,43 +52,43 @@ def measure(subject: Subject) -> Outcome:
     return Outcome("pass", f"a box of it keeps its height to {worst:.1%} in {draws} draws at the ends of the bounds")
 
 
-def height_change(subject: Subject, parameters: Any) -> float:
-    """The change of the height of the centre of mass, relative to that height."""
-    scene = box(subject, parameters)
+def height_change(subject: Subject, parameters: Any, space: Space = PLANE_STRAIN) -> float:
+    """The change of the height of the points' centre, relative to that height."""
+    scene = Scene.from_dict(box(subject, parameters, space))
     with warnings.catch_warnings():
         # The uppermost points of Cam Clay start with little pressure, as in any geostatic scene.
         warnings.simplefilter("ignore", InputWarning)
         simulation = Simulation(scene)
     (body,) = simulation.bodies
-    before = float(body.positions[1].mean())
+    before = float(body.positions[space.up].mean())
     simulation.advance_to(scene.time.end)
-    return float(body.positions[1].mean()) / before - 1.0
+    return float(body.positions[space.up].mean()) / before - 1.0
 
 
-def box(subject: Subject, parameters: Any) -> Scene:
-    """The scene. Raises InputError if the law does not answer a small compression with pressure."""
+def box(subject: Subject, parameters: Any, space: Space = PLANE_STRAIN) -> dict[str, Any]:
+    """The scene as tables. Raises InputError if the law does not answer a small compression with pressure."""
     law = subject.law.name
     bottom_pressure = PRESSURE_SHARE * bulk_modulus(subject, parameters)
     if not 0.0 < bottom_pressure < math.inf:
         raise InputError(f"a small compression changes the pressure by {bottom_pressure / PRESSURE_SHARE:g} Pa a unit")
     density = packed_density(subject, bottom_pressure, parameters)
     gravity = bottom_pressure / (density * SIDE)
-    return Scene.from_dict(
-        {
-            "gravity": [0.0, -gravity],
-            "grid": {"cell_size": SIDE / CELLS, "upper": [SIDE, 1.5 * SIDE]},
-            "time": {"end": 0.5 * math.sqrt(2.0 * SIDE / gravity)},
-            "material": {law: parameters._asdict()},
-            "body": [
-                {
-                    "material": law,
-                    "density": density,
-                    "shape": {"kind": "rectangle", "lower": [0.0, 0.0], "upper": [SIDE, SIDE]},
-                    "initial_stress": {"kind": "geostatic"},
-                }
-            ],
-        }
-    )
+    across = space.axes - 1
+    return {
+        "space": space.name,
+        "gravity": [*[0.0] * across, -gravity],
+        "grid": {"cell_size": SIDE / CELLS, "upper": [*[SIDE] * across, 1.5 * SIDE]},
+        "time": {"end": 0.5 * math.sqrt(2.0 * SIDE / gravity)},
+        "material": {law: parameters._asdict()},
+        "body": [
+            {
+                "material": law,
+                "density": density,
+                "shape": block([0.0] * space.axes, [SIDE] * space.axes),
+                "initial_stress": {"kind": "geostatic"},
+            }
+        ],
+    }
 
 
 def packed_density(subject: Subject, mean_pressure: float, parameters: Any) -> float:

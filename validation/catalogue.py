@@ -47,6 +47,10 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "spaces.driven_cylinder",
         "spaces.driven_cube",
         "spaces.pipe_flow",
+        "spaces.two_spheres",
+        "spaces.slab",
+        "spaces.cylinder",
+        "spaces.every_law",
     ),
     # One scene for each granular law.
     "laws": ("collapses.collapse_of_every_law",),

@@ -21,6 +21,7 @@ NORM = "share of the time not reached; points not finite; energy created over en
 ENERGY_BAND = 1e-2
 INTERVALS = 20
 Observe = Callable[[Simulation], None]
+Lead = Callable[[Simulation, float, Observe], None]
 
 
 @dataclass(frozen=True)
@@ -50,9 +51,7 @@ def in_stable_steps(simulation: Simulation, end: float, observe: Observe) -> Non
     advance(simulation, end, observe, INTERVALS)
 
 
-def trial(
-    simulation: Simulation, end: float, lead: Callable[[Simulation, float, Observe], None] = in_stable_steps
-) -> Trial:
+def trial(simulation: Simulation, end: float, lead: Lead = in_stable_steps) -> Trial:
     """Lead a simulation to `end` [s]; a run that stops is a result too."""
     created = [0.0]
     message = ""
