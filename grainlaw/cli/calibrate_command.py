@@ -1,5 +1,6 @@
 """`grainlaw calibrate`: parameters of a law from element-test data."""
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -53,19 +54,21 @@ def calibrate(
     from grainlaw.materials.calibration.shipped import data_file
 
     files = [data_file(path) for path in data]
-    findings = Findings(fitted_to(law, files, fit or (), fixed, parameters))
+    found = fitted_to(law, files, fit or (), fixed, parameters)
+    findings = Findings(found)
     _print_findings(findings)
     if out is not None:
+        from grainlaw.materials.calibration.figures import draw
         from grainlaw.materials.calibration.files import write_files
 
-        for path in write_files(findings, out):
+        for path in write_files(findings, out, partial(draw, findings, found.model)):
             typer.echo(f"  {path}")
 
 
 def _print_findings(findings: "Findings") -> None:
     fit = findings.fit
     size, freedom = fit.residuals.size, findings.freedom
-    typer.echo(f"{fit.model.law.name}, {size} measurements, {fit.solution.size} parameters:")
+    typer.echo(f"{fit.law.name}, {size} measurements, {fit.solution.size} parameters:")
     width = max(len(found.name) for found in findings.estimates)
     for found in findings.estimates:
         unit = "" if found.unit == "1" else f" {found.unit}"
@@ -76,7 +79,7 @@ def _print_findings(findings: "Findings") -> None:
         typer.echo("correlation:")
         for found, row in zip(findings.estimates, findings.correlation.tolist(), strict=True):
             typer.echo(f"  {found.name:<{width}} " + " ".join(f"{value:7.3f}" for value in row))
-    if fit.model.knows_errors:
+    if fit.knows_errors:
         typer.echo(f"chi2 = {findings.misfit:.4g} with {freedom} degrees of freedom")
     else:
         typer.echo(f"scatter about the law: {(findings.misfit / freedom) ** 0.5:.3g} of the size of the data")

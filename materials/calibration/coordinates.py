@@ -1,9 +1,15 @@
 """The coordinates in which parameters are fitted: no dimension, logarithmic where every positive value is allowed."""
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from grainlaw.materials import Parameter
+
+Array = NDArray[np.float64]
 
 # exp of more leaves the range of numbers.
 LARGEST_EXPONENT = 690.0
@@ -52,3 +58,24 @@ def coordinate(name: str, declaration: Parameter, start: float) -> Coordinate:
     """The coordinate of a parameter, scaled by its start value or, where that is small, by the width of its bounds."""
     width = declaration.interval.upper - declaration.interval.lower
     return Coordinate(name, declaration, max(abs(start), 0.1 * width if math.isfinite(width) else 0.0) or 1.0)
+
+
+def coordinates_of(chosen: Sequence[Coordinate], values: Mapping[str, float]) -> Array:
+    """The coordinates of values by name, shape (parameters,)."""
+    return np.array([found.of_value(values[found.name]) for found in chosen])
+
+
+def values_at(chosen: Sequence[Coordinate], point: Array, others: Mapping[str, float]) -> dict[str, float]:
+    """Values by name at coordinates, shape (parameters,), beside those of the other parameters."""
+    return {**others, **{found.name: found.value(u) for found, u in zip(chosen, point.tolist(), strict=True)}}
+
+
+def bounds_of(chosen: Sequence[Coordinate]) -> Array:
+    """Lower and upper bounds of the coordinates, shape (2, parameters)."""
+    return np.array([found.bounds for found in chosen]).T
+
+
+def off_bounds(point: Array, bounds: Array, margin: float) -> Array:
+    """A point at least `margin` inside its bounds, or a quarter of their width: a search begins between them."""
+    margins = np.minimum(margin, 0.25 * (bounds[1] - bounds[0]))
+    return np.asarray(np.clip(point, bounds[0] + margins, bounds[1] - margins))

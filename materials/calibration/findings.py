@@ -71,8 +71,11 @@ class Findings:
     @cached_property
     def _combined(self) -> tuple[Array, Array]:
         """Standard deviations along the singular vectors of the scaled Jacobian, ascending, and these vectors."""
-        _, values, vectors = np.linalg.svd(self.fit.jacobian * self.reach, full_matrices=False)
-        noise = 1.0 if self.fit.model.knows_errors else math.sqrt(self.misfit / self.freedom)
+        return self._combinations_of(self.fit.jacobian * self.reach)
+
+    def _combinations_of(self, scaled: Array) -> tuple[Array, Array]:
+        _, values, vectors = np.linalg.svd(scaled, full_matrices=False)
+        noise = 1.0 if self.fit.knows_errors else math.sqrt(self.misfit / self.freedom)
         return noise / np.maximum(values, SMALLEST_SINGULAR_VALUE * max(float(values[0]), 1e-300)), vectors
 
     @cached_property
@@ -80,6 +83,18 @@ class Findings:
         """Covariance of the coordinates, shape (parameters, parameters)."""
         deviations, vectors = self._combined
         return np.asarray((vectors.T * deviations**2) @ vectors) * np.outer(self.reach, self.reach)
+
+    @cached_property
+    def determined(self) -> NDArray[np.bool_]:
+        """Which of the parameters the data determine, shape (parameters,)."""
+        return np.array([found.determined for found in self.estimates])
+
+    @cached_property
+    def covariance_of_determined(self) -> Array:
+        """Covariance of the coordinates that the data determine, with the others held at their estimates."""
+        reach = self.reach[self.determined]
+        deviations, vectors = self._combinations_of(self.fit.jacobian[:, self.determined] * reach)
+        return np.asarray((vectors.T * deviations**2) @ vectors) * np.outer(reach, reach)
 
     @cached_property
     def correlation(self) -> Array:
@@ -91,7 +106,7 @@ class Findings:
     def quantile(self) -> float:
         """Half of the 95 % interval over the standard deviation."""
         tail = 0.5 * (1.0 + CONFIDENCE)
-        return float(norm.ppf(tail) if self.fit.model.knows_errors else t.ppf(tail, self.freedom))
+        return float(norm.ppf(tail) if self.fit.knows_errors else t.ppf(tail, self.freedom))
 
     @cached_property
     def estimates(self) -> tuple[Estimate, ...]:
@@ -149,7 +164,7 @@ class Findings:
             lowest, highest = found.bounds
             if min(u - lowest, highest - u) < 1e-3:
                 yield f"{found.name} lies at a bound of {found.declaration.bounds}: its interval is not to be relied on"
-        if self.fit.model.knows_errors:
+        if self.fit.knows_errors:
             probability = float(chi2.sf(self.misfit, self.freedom))
             if probability < IMPROBABLE:
                 yield (

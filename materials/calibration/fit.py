@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from grainlaw.materials import InputError, Law, SimulationError, get_material
-from grainlaw.materials.calibration.coordinates import Coordinate, coordinate
+from grainlaw.materials.calibration.coordinates import (
+    Coordinate,
+    bounds_of,
+    coordinate,
+    coordinates_of,
+    off_bounds,
+    values_at,
+)
 from grainlaw.materials.calibration.data import DataSet, read_data
 from grainlaw.materials.calibration.model import ForwardModel, Values
 from grainlaw.materials.element.specimen import base_values
@@ -30,6 +37,8 @@ SMALLEST_EFFECT = {True: 1e-3, False: 1e-5}
 class Fit:
     """What least squares found.
 
+    sources      what it was fitted to, in words
+    knows_errors whether the residuals are in standard errors
     coordinates  of the fitted parameters
     solution     their values in these coordinates, shape (parameters,)
     start        where the search began, by name, with every parameter of the law
@@ -41,7 +50,9 @@ class Fit:
     converged    whether the search came to an end of its own
     """
 
-    model: ForwardModel
+    law: Law
+    sources: tuple[str, ...]
+    knows_errors: bool
     coordinates: tuple[Coordinate, ...]
     solution: Array
     start: Values
@@ -53,13 +64,20 @@ class Fit:
     converged: bool
 
 
+@dataclass(frozen=True)
+class ElementFit(Fit):
+    """A fit to element tests, and the model that answers them."""
+
+    model: ForwardModel
+
+
 def calibrate(
     law_name: str,
     paths: Sequence[Path],
     fitted: Sequence[str] = (),
     fixed: Mapping[str, float] | None = None,
     parameters: str | Path | None = None,
-) -> Fit:
+) -> ElementFit:
     """Fit parameters of a law to data files.
 
     fitted      names of the parameters to fit; none: all that are not fixed and on which the data depend
@@ -76,14 +94,17 @@ def calibrate(
 
 def fit_to_data(
     law: Law, data: Sequence[DataSet], fitted: Sequence[str], start: Values, fixed: Sequence[str] = ()
-) -> Fit:
+) -> ElementFit:
     """As `calibrate`, for data that are read already and start values by name."""
     model = ForwardModel(law, tuple(data))
     checked = law.checked(start, law.name)._asdict()
-    _check_names(law, data, fitted, fixed)
+    check_names(law, fitted, fixed)
+    for name in fitted:
+        if name in _stated(data, law):
+            raise InputError(f"'{name}' cannot be fitted: the data state its value")
     candidates = fitted or [name for name in law.parameter_declarations if name not in {*fixed, *_stated(data, law)}]
     chosen = tuple(coordinate(name, law.parameter_declarations[name], checked[name]) for name in candidates)
-    effects = np.abs(_jacobian(model, chosen, _start(chosen, checked), checked, model.residuals(checked)))
+    effects = np.abs(_jacobian(model, chosen, coordinates_of(chosen, checked), checked, model.residuals(checked)))
     noticeable = SMALLEST_EFFECT[model.knows_errors]
     without_effect: tuple[str, ...] = ()
     if not fitted:
@@ -123,7 +144,8 @@ def _stated(data: Sequence[DataSet], law: Law) -> set[str]:
     return declared.intersection(*(set(found.statements) for found in data))
 
 
-def _check_names(law: Law, data: Sequence[DataSet], fitted: Sequence[str], fixed: Sequence[str]) -> None:
+def check_names(law: Law, fitted: Sequence[str], fixed: Sequence[str]) -> None:
+    """Raise InputError for a name that is no parameter of the law, or is both to be fitted and fixed."""
     declared = law.parameter_declarations
     for name in (*fitted, *fixed):
         if name not in declared:
@@ -131,8 +153,6 @@ def _check_names(law: Law, data: Sequence[DataSet], fitted: Sequence[str], fixed
     for name in fitted:
         if name in fixed:
             raise InputError(f"'{name}' is both to be fitted and fixed")
-        if name in _stated(data, law):
-            raise InputError(f"'{name}' cannot be fitted: the data state its value")
 
 
 def _solved(
@@ -141,10 +161,10 @@ def _solved(
     start: Values,
     without_effect: tuple[str, ...],
     left_out: tuple[str, ...],
-) -> Fit:
+) -> ElementFit:
     def residuals(point: Array) -> Array:
         try:
-            return model.residuals(_values(chosen, point, start))
+            return model.residuals(values_at(chosen, point, start))
         except (InputError, SimulationError):
             # Least squares then tries a shorter step.
             return np.full(size, np.nan)
@@ -153,42 +173,31 @@ def _solved(
         return _jacobian(model, chosen, point, start, residuals(point))
 
     size = model.residuals(start).size
-    bounds = np.array([found.bounds for found in chosen]).T
+    bounds = bounds_of(chosen)
     found = least_squares(
         residuals,
-        _inside(_start(chosen, start), bounds),
+        off_bounds(coordinates_of(chosen, start), bounds, DIFFERENCE),
         jac=jacobian,
         bounds=bounds,
         x_scale="jac",
         ftol=TOLERANCE,
         max_nfev=200,
     )
-    return Fit(
+    return ElementFit(
+        law=model.law,
+        sources=tuple(found.label for found in model.data),
+        knows_errors=model.knows_errors,
         model=model,
         coordinates=chosen,
         solution=found.x,
         start=start,
-        values=_values(chosen, found.x, start),
+        values=values_at(chosen, found.x, start),
         residuals=found.fun,
         jacobian=found.jac,
         without_effect=without_effect,
         left_out=left_out,
         converged=found.status > 0,
     )
-
-
-def _start(chosen: tuple[Coordinate, ...], values: Values) -> Array:
-    return np.array([found.of_value(values[found.name]) for found in chosen])
-
-
-def _inside(point: Array, bounds: Array) -> Array:
-    """The point, moved off its bounds: the search begins strictly between them."""
-    margin = np.minimum(DIFFERENCE, 0.25 * (bounds[1] - bounds[0]))
-    return np.asarray(np.clip(point, bounds[0] + margin, bounds[1] - margin))
-
-
-def _values(chosen: tuple[Coordinate, ...], point: Array, start: Values) -> Values:
-    return {**start, **{found.name: found.value(u) for found, u in zip(chosen, point.tolist(), strict=True)}}
 
 
 def _jacobian(
@@ -202,7 +211,7 @@ def _jacobian(
             moved = point.copy()
             moved[index] += step
             try:
-                sides.append((step, model.residuals(_values(chosen, moved, start))))
+                sides.append((step, model.residuals(values_at(chosen, moved, start))))
             except (InputError, SimulationError):
                 continue
         if not sides:

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from grainlaw.materials.calibration.parameter_values import read_values
 from grainlaw.materials.declarations import checked_parameters
 from grainlaw.materials.element.settings import ElementTest
 from grainlaw.materials.errors import InputError, InputWarning, nearest_name
 from grainlaw.materials.law import Law
 from grainlaw.materials.registry import get_material
-from grainlaw.materials.toml_file import read_toml
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def base_values(law: Law, parameters: str | Path | None) -> tuple[dict[str, Any]
     name = str(parameters)
     label = f"{law.name} {Path(name).stem}"
     if name.endswith(".toml"):
-        return read_toml(Path(name), "parameter file"), label, f"file {name}"
+        return read_values(Path(name)), label, f"file {name}"
     if name not in law.parameter_sets:
         raise InputError(f"{law.name} has no parameter set '{name}'; {nearest_name(name, law.parameter_sets)}")
     found = law.parameter_sets[name]

@@ -1,7 +1,7 @@
 """The tables of a body: its shape, its material, and its state at the start."""
 
 from itertools import pairwise
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, field_validator, model_validator
 
@@ -95,6 +95,11 @@ class BodySection(Section):
         default=4,
         description="material points per cell, a square number; may be left to `accuracy`; in 3D a cube number, "
         "default: 8",
+    )
+    lattice_shift: list[Annotated[float, Field(ge=-0.5, le=0.5)]] = Field(
+        default=[],
+        description="shift of the points along each axis off their places within the cells, over the distance between "
+        "them, to see what a result owes to these places; default: none [1]",
     )
     velocity: Vector = Field(default=(0.0, 0.0), description="initial velocity [m/s]")
     initial_stress: InitialStressSection = Field(

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from grainlaw.materials import InputError
-from grainlaw.materials.toml_file import read_toml
+from grainlaw.materials.calibration.parameter_values import read_values
 
 
 def read_content(path: Path, overrides: Mapping[str, Any]) -> dict[str, Any]:
@@ -50,7 +50,7 @@ def _take_in_parameter_file(table: Any, scene: Path) -> None:
         return
     file = scene.parent / str(name)
     try:
-        values = read_toml(file, "parameter file")
+        values = read_values(file)
     except InputError as error:
         raise InputError(f"{scene}: {error}") from None
     for key, value in values.items():

@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 import tomli_w
 from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
 
@@ -23,7 +24,7 @@ from grainlaw.mpm_core.scene.section import (
     Vector,
     refuse_beyond,
 )
-from grainlaw.mpm_core.scene.shapes import lattice, refused_mesh
+from grainlaw.mpm_core.scene.shapes import lattice, points_along_edge, refused_mesh
 from grainlaw.mpm_core.scene.space_rules import fitted_to_space
 from grainlaw.mpm_core.space import SPACES, Space
 
@@ -205,6 +206,9 @@ class Scene(Section):
         """The places of a body's points at the start, shape (n, axes) [m]."""
         grid = self.grid
         points = lattice(body.shape, grid.lower, grid.cell_size, body.points_per_cell)
+        if body.lattice_shift:
+            spacing = grid.cell_size / points_along_edge(body.points_per_cell, len(grid.lower))
+            points = points + spacing * np.array(body.lattice_shift)
         if not body.clip:
             return points
         return points[((points > grid.lower) & (points < grid.upper)).all(axis=1)]
@@ -238,6 +242,11 @@ class Scene(Section):
         for number, body in enumerate(self.body):
             if len(body.shape.bounds()[0]) != self.in_space.axes:
                 raise ValueError(f"body.{number}.shape: {refused_mesh(body.shape)} in space = '{self.space}'")
+            if len(body.lattice_shift) not in {0, self.in_space.axes}:
+                raise ValueError(
+                    f"body.{number}.lattice_shift = {body.lattice_shift}: allowed: {self.in_space.axes} numbers, one "
+                    "for each axis"
+                )
             if (self.space == "plane_strain") == (body.initial_stress.out_of_plane_ratio is None):
                 raise ValueError(
                     f"body.{number}.initial_stress.out_of_plane_ratio belongs to space = 'plane_strain'; in "

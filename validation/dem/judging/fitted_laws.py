@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from grainlaw.materials.calibration.findings import Estimate, Findings
-from grainlaw.materials.calibration.fit import Fit, calibrate
+from grainlaw.materials.calibration.fit import ElementFit, calibrate
 from grainlaw.materials.calibration.model import answer
 
 CURVE_POINTS = 12
@@ -48,13 +48,14 @@ class FittedLaw:
 def fitted(judged: JudgedLaw, folder: Path) -> FittedLaw:
     """Fit a law to its data files in a folder. Raises InputError or SimulationError if that cannot be done."""
     paths = [folder / name for name in judged.data if (folder / name).is_file()]
-    findings = Findings(calibrate(judged.law, paths, fixed=judged.given))
+    fit = calibrate(judged.law, paths, fixed=judged.given)
+    findings = Findings(fit)
     fixed = "".join(f" --fix {name}={value:g}" for name, value in judged.given.items())
     command = f"grainlaw calibrate {judged.law} {' '.join(path.name for path in paths)}{fixed}"
-    return FittedLaw(judged, findings.fit.values, findings.estimates, findings.remarks, command, _curve(findings.fit))
+    return FittedLaw(judged, fit.values, findings.estimates, findings.remarks, command, _curve(fit))
 
 
-def _curve(fit: Fit) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def _curve(fit: ElementFit) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """The friction that the law has in steady shear, over the range of the data."""
     shear = next(data for data in fit.model.data if data.experiment.name == "steady-shear")
     numbers = np.geomspace(shear.abscissa.min(), shear.abscissa.max(), CURVE_POINTS)
