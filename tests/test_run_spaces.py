@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import pytest
 from scenes_for_tests import MU_I_LC, Finished, changed, grainlaw, write_scene
-from test_resume import StoppedError, assert_same_runs, stopped_at
+from test_resume import StoppedError, assert_same_runs, kill_in_the_middle, start, stopped_at
 
 from grainlaw.mpm_core import Scene, run
 from grainlaw.mpm_core.output.run_folder import RunFolder
@@ -93,6 +93,17 @@ def test_a_run_that_was_stopped_goes_on_to_the_same_bits_with_two_threads(tmp_pa
             run(scene, tmp_path, threads=2)
     run(scene, tmp_path, threads=2, resume=True)
     assert_same_runs(runs / space, tmp_path)
+
+
+def test_a_killed_run_in_3d_goes_on_to_the_same_bits(tmp_path):
+    changes = {"grid.cell_size": 0.025, "time.end": 0.4, "output.history_interval": 0.005}
+    scene_file = write_scene(tmp_path / "scene.toml", changed(QUARTER, changes))
+    whole, killed = tmp_path / "whole", tmp_path / "killed"
+    run(Scene.load(scene_file), whole)
+    kill_in_the_middle(start(scene_file, killed), killed, after=0.1)
+    assert 0.1 < RunFolder(killed).history["t"][-1] < 0.4
+    run(Scene.load(scene_file), killed, resume=True)
+    assert_same_runs(whole, killed)
 
 
 def test_a_run_in_3d_in_single_precision_is_that_in_double(tmp_path, runs):

@@ -2,6 +2,7 @@
 
 import base64
 import io
+from itertools import cycle
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,15 +12,16 @@ from grainlaw.validation.case import Convergence, Curve, Figure
 
 WIDTH, HEIGHT, RESOLUTION = 5.2, 3.6, 110
 MEASURED_COLORS = ("#d95f02", "#1b9e77", "#7570b3", "#e7298a")
+REFERENCE_COLORS = ("#333333", "#999999", "#c0a060")
 MANY_POINTS = 40
 
 
 def figure_image(figure: Figure) -> str:
     """One figure as a data URI."""
     canvas, axes = _axes(figure.title, figure.x_label, figure.y_label)
-    colors = iter(MEASURED_COLORS * 3)
+    colors, references = cycle(MEASURED_COLORS), cycle(REFERENCE_COLORS)
     for curve in figure.curves:
-        _draw(axes, curve, "#333333" if curve.role == "reference" else next(colors))
+        _draw(axes, curve, next(references if curve.role == "reference" else colors))
     if "x" in figure.logarithmic:
         axes.set_xscale("log")
     if "y" in figure.logarithmic:
