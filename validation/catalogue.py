@@ -72,6 +72,7 @@ _PLACES: dict[str, tuple[str, ...]] = {
     "collapses": (
         "collapses.grid_convergence",
         "collapses.runout_scaling",
+        "collapses.cylinder_scaling",
         "collapses.aluminium_bars",
         "collapses.invariances.moving_frame",
         "collapses.invariances.turned_scene",

@@ -7,6 +7,7 @@ from itertools import cycle
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
+from matplotlib.ticker import LogFormatter
 
 from grainlaw.validation.case import Convergence, Curve, Figure
 
@@ -22,10 +23,9 @@ def figure_image(figure: Figure) -> str:
     colors, references = cycle(MEASURED_COLORS), cycle(REFERENCE_COLORS)
     for curve in figure.curves:
         _draw(axes, curve, next(references if curve.role == "reference" else colors))
-    if "x" in figure.logarithmic:
-        axes.set_xscale("log")
-    if "y" in figure.logarithmic:
-        axes.set_yscale("log")
+    for name in figure.logarithmic:
+        axes.set(**{f"{name}scale": "log"})
+        getattr(axes, f"{name}axis").set(major_formatter=LogFormatter(), minor_formatter=LogFormatter())
     axes.legend(frameon=False, fontsize=8)
     return data_uri(canvas)
 

@@ -1,44 +1,26 @@
 """Runout of columns from half as high as wide to sixteen times as high, against experiments and a continuum model."""
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from grainlaw.plugins.mu_i.friction import own_inertial_number_constant
-from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error, upper_bound
+from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error
+from grainlaw.validation.cases.collapses.scaling import END, Scaling, fitted, listed, outside, runout_of
 from grainlaw.validation.scenes import advance, simulation_of
 
 ASPECT_RATIOS = {Effort.QUICK: (0.5, 2.0, 8.0), Effort.FULL: (0.5, 1.0, 2.0, 4.0, 8.0, 16.0)}
 CELLS_OF_WIDTH = {Effort.QUICK: 8, Effort.FULL: 16}
 WIDTH, GRAVITY = 0.1, 9.81
-# A column needs about 3.3 sqrt(H/g) to come to rest (Lube et al. 2005).
-END = 5.0
 TALL = 3.0
 EXPONENT_BAND = 0.15
 # Glass beads: mu(I) of Lagree, Staron & Popinet (2011), I_0 counted in the engineering rate.
 FRICTION, SATURATION, REFERENCE_NUMBER = 0.32, 0.60, 0.4
-
-
-@dataclass(frozen=True)
-class Scaling:
-    """(L - L_0)/L_0 = low a for a < TALL, high a^exponent above."""
-
-    source: str
-    low: float
-    high: float
-    exponent: float
-
-    def runout(self, aspect_ratio: float) -> float:
-        """The published fit."""
-        return self.low * aspect_ratio if aspect_ratio < TALL else self.high * aspect_ratio**self.exponent
-
-
 SCALINGS = (
-    Scaling("Lube et al. 2005, experiments in a channel", 1.2, 1.9, 2.0 / 3.0),
-    Scaling("Lajeunesse et al. 2005, experiments in a channel", 1.2, 1.9, 2.0 / 3.0),
-    Scaling("Lagree et al. 2011, mu(I) continuum", 2.2, 3.9, 0.7),
+    Scaling("Lube et al. 2005, experiments in a channel", 1.2, 1.9, 2.0 / 3.0, TALL),
+    Scaling("Lajeunesse et al. 2005, experiments in a channel", 1.2, 1.9, 2.0 / 3.0, TALL),
+    Scaling("Lagree et al. 2011, mu(I) continuum", 2.2, 3.9, 0.7, TALL),
 )
 
 
@@ -76,49 +58,32 @@ def scene(aspect_ratio: float, effort: Effort, static_friction: float) -> dict[s
 
 
 def runout(aspect_ratio: float, effort: Effort, static_friction: float = FRICTION) -> float:
-    """(L - L_0)/L_0 at rest, with L up to the first column of cells that holds no point."""
-    content = scene(aspect_ratio, effort, static_friction)
-    simulation = simulation_of(content)
-    advance(simulation, content["time"]["end"])
-    cell = simulation.grid.cell_size
-    occupied = np.bincount(
-        (simulation.bodies[0].positions[0] / cell).astype(int), minlength=simulation.grid.cells[0] + 1
-    )
-    return float(np.argmin(occupied > 0)) * cell / WIDTH - 1.0
+    """(L - L_0)/L_0 at rest."""
+    simulation = simulation_of(scene(aspect_ratio, effort, static_friction))
+    advance(simulation, simulation.scene.time.end)
+    return runout_of(simulation, WIDTH)
 
 
 def within_published(aspect_ratio: float, found: float) -> Measurement:
     """How far a runout lies outside the range of the published fits, as a share of the nearer one."""
-    published = [scaling.runout(aspect_ratio) for scaling in SCALINGS]
-    outside = max(0.0, 1.0 - found / min(published), found / max(published) - 1.0)
-    return upper_bound(f"a = {aspect_ratio:g}: outside the published range", "1", outside, 0.0)
-
-
-def fitted_exponent(found: dict[float, float]) -> tuple[float, float]:
-    """Slope in logarithmic axes, and its standard error from the residuals (NaN for two columns)."""
-    x, y = np.log(list(found)), np.log(list(found.values()))
-    slope, offset = np.polyfit(x, y, 1)
-    freedom = len(x) - 2
-    residuals = y - slope * x - offset
-    error = math.sqrt((residuals**2).sum() / freedom / ((x - x.mean()) ** 2).sum()) if freedom > 0 else math.nan
-    return float(slope), error
+    return outside(f"a = {aspect_ratio:g}", found, [scaling.runout(aspect_ratio) for scaling in SCALINGS])
 
 
 def measure(effort: Effort) -> Evidence:
     """All columns; in full the exponents of the low and the tall ones."""
     found = {a: runout(a, effort) for a in ASPECT_RATIOS[effort]}
     measurements = [within_published(a, value) for a, value in found.items()]
-    notes = ["(L - L_0)/L_0: " + ", ".join(f"a = {a:g}: {value:.2f}" for a, value in found.items())]
+    notes = [listed("(L - L_0)/L_0", found)]
     if effort is Effort.FULL:
         for label, chosen, published in (
             ("low", {a: v for a, v in found.items() if a < TALL}, 1.0),
             ("tall", {a: v for a, v in found.items() if a > TALL}, 2.0 / 3.0),
         ):
-            exponent, error = fitted_exponent(chosen)
+            law = fitted(chosen)
             measurements.append(
-                scaled_error(f"exponent of {label} columns", "1", exponent, published, 1.0, EXPONENT_BAND)
+                scaled_error(f"exponent of {label} columns", "1", law.exponent, published, 1.0, EXPONENT_BAND)
             )
-            notes.append(f"exponent of {label} columns: {exponent:.2f} +- {error:.2f}")
+            notes.append(f"{label} columns: {law}")
     ratios = np.geomspace(0.5, 16.0, 60)
     curves = [curve(one.source, ratios, [one.runout(a) for a in ratios], "reference") for one in SCALINGS]
     curves.append(curve("mu(I)-LC", list(found), list(found.values())))
