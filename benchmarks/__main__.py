@@ -18,6 +18,7 @@ from benchmarks.race import THREE_D, race
 from benchmarks.report import Table, print_table, write
 from benchmarks.roofline import Roofline, measured_roofline
 from benchmarks.sizes import cost_over_domain, cost_over_size
+from benchmarks.sweeps import gain_of_a_second_worker
 from benchmarks.tables import (
     domain_table,
     forecast_table,
@@ -27,6 +28,7 @@ from benchmarks.tables import (
     race_table,
     roofline_table,
     size_table,
+    sweep_table,
     two_cores_table,
 )
 from benchmarks.two_cores import gain_of_two_cores
@@ -45,6 +47,7 @@ class Part(StrEnum):
     DOMAIN = "domain"
     MEMORY = "memory"
     PLANS = "plans"
+    SWEEP = "sweep"
 
 
 class Precision(StrEnum):
@@ -56,7 +59,10 @@ class Precision(StrEnum):
 
 @dataclass(frozen=True)
 class Effort:
-    """How large and how long: cell size [m] and end [s] of the races, points of the other parts, rounds; precision."""
+    """How large and how long: cell size [m] and end [s] of the races, points of the other parts, rounds; precision.
+
+    `sweep` is cell size [m], end [s] and number of values of each of two keys.
+    """
 
     cell_size: float
     end: float
@@ -67,6 +73,7 @@ class Effort:
     pass_steps: int
     working_sets: tuple[int, ...]
     scenes: Mapping[str, Mapping[str, Any]]
+    sweep: tuple[float, float, int]
     precision: str = "double"
 
 
@@ -80,6 +87,7 @@ FULL = Effort(
     pass_steps=300,
     working_sets=(2**18, 2**20, 2**22, 2**24, 2**26, 3 * 2**28),
     scenes=FORECAST_SCENES,
+    sweep=(0.025, 0.6, 8),
 )
 QUICK = Effort(
     cell_size=0.05,
@@ -91,6 +99,7 @@ QUICK = Effort(
     pass_steps=20,
     working_sets=(2**18, 2**24),
     scenes=QUICK_SCENES,
+    sweep=(0.05, 0.02, 2),
 )
 
 
@@ -191,6 +200,13 @@ def _plans(record: Record, materials: list[str], effort: Effort, roofline: Roofl
     record.add("plans", found, forecast_table(found))
 
 
+def _sweep(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+    if cores() < 2:
+        return
+    found = gain_of_a_second_worker(SCENES[materials[0]], *effort.sweep)
+    record.add("sweep", found, sweep_table(materials[0], found))
+
+
 def _threads() -> list[int]:
     return [1, 2] if cores() > 1 else [1]
 
@@ -204,6 +220,7 @@ MEASURES: dict[Part, Callable[[Record, list[str], Effort, Roofline], None]] = {
     Part.DOMAIN: _domain,
     Part.MEMORY: _flip_fraction,
     Part.PLANS: _plans,
+    Part.SWEEP: _sweep,
 }
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from benchmarks.race import Result
 from benchmarks.report import Table
 from benchmarks.roofline import Roofline
 from benchmarks.sizes import Cost
+from benchmarks.sweeps import SweepTimes
 from benchmarks.timing import Spread
 from benchmarks.two_cores import TwoCores
 
@@ -157,6 +158,12 @@ def forecast_table(found: Sequence[Forecast]) -> Table:
         *("time planned [s]", "wall time taken [s]", "ratio", "processor time taken [s]", "ratio"),
     )
     return Table("Plans and runs", headings, rows)
+
+
+def sweep_table(material: str, found: SweepTimes) -> Table:
+    """What a second worker gains."""
+    row = (f"{found.runs}", f"{found.one:.1f}", f"{found.two:.1f}", f"{found.ratio:.2f}")
+    return Table(f"Sweep, {material}", ("runs", "one worker [s]", "two workers [s]", "two over one"), (row,))
 
 
 def _range(values: Spread, factor: float, digits: str) -> str:

@@ -7,6 +7,7 @@
     gl.run("collapse_mu_i_lc", "runs/column")                    a scene into a run's folder
     gl.read_run("runs/column").history["runout"]                 what it left there
     gl.Simulation("two_discs").advance_to(0.1)                   a scene step by step
+    gl.sweep("two_discs", "runs/s", {"time.end": "1:3:3"})       a scene for each of several values
 
 Each name is imported when it is first asked for, so that `import grainlaw` costs nothing and starts nothing.
 """
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from grainlaw.materials.errors import InputError as InputError
     from grainlaw.materials.errors import InputWarning as InputWarning
     from grainlaw.materials.errors import SimulationError as SimulationError
+    from grainlaw.studies.sweep import Sweep as Sweep
+    from grainlaw.studies.sweep import sweep as sweep
 
     __version__: str
 
@@ -41,12 +44,14 @@ _HOMES = {
     "Scene": "grainlaw.face.scenes",
     "Simulation": "grainlaw.face.simulations",
     "SimulationError": "grainlaw.materials.errors",
+    "Sweep": "grainlaw.studies.sweep",
     "law": "grainlaw.face.laws",
     "laws": "grainlaw.face.laws",
     "load_plugin": "grainlaw.face.laws",
     "read_run": "grainlaw.face.runs",
     "run": "grainlaw.face.runs",
     "scenes": "grainlaw.face.scenes",
+    "sweep": "grainlaw.studies.sweep",
 }
 __all__ = [
     "ConstitutiveLaw",
@@ -57,12 +62,14 @@ __all__ = [
     "Scene",
     "Simulation",
     "SimulationError",
+    "Sweep",
     "law",
     "laws",
     "load_plugin",
     "read_run",
     "run",
     "scenes",
+    "sweep",
 ]
 
 

@@ -2,7 +2,7 @@
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -48,6 +48,36 @@ def shown_progress(end: float, lines_otherwise: bool = False) -> "Iterator[Callb
             yield _every(LINE_INTERVAL, lambda s, dt: print(_line(s, dt, end), file=sys.stderr))
     else:
         yield None
+
+
+@contextmanager
+def shown_runs(total: int) -> Iterator[Callable[[str, str], None]]:
+    """A function (name, reason) to call as each of so many runs is there; the reason why it failed may be empty.
+
+    It moves a bar on a terminal and in a notebook, and writes lines to stderr elsewhere.
+    """
+    console, done, failed = Console(stderr=True), 0, 0
+
+    def state() -> str:
+        return f"{done} of {total} runs" + (f", {failed} failed" if failed else "")
+
+    def counting(show: Callable[[str, str], None]) -> Callable[[str, str], None]:
+        def count(name: str, reason: str) -> None:
+            nonlocal done, failed
+            done, failed = done + 1, failed + bool(reason)
+            show(name, reason)
+
+        return count
+
+    if _in_notebook():
+        shown = _notebook_bar()
+        yield counting(lambda name, reason: shown(done / total, state()))
+    elif console.is_terminal:
+        with progress_bar(console) as bar:
+            task = bar.add_task("", total=total, state=state())
+            yield counting(lambda name, reason: bar.update(task, completed=done, state=state()))
+    else:
+        yield counting(lambda name, reason: print(f"{name}: {reason or 'finished'} ({state()})", file=sys.stderr))
 
 
 def say_that_it_compiles() -> None:

@@ -10,6 +10,7 @@ import threading
 import time
 
 import pytest
+from distributed import Client
 from scenes_for_tests import BLOCK, changed
 
 from grainlaw.materials import InputError, SimulationError
@@ -48,13 +49,20 @@ class Cluster:
     def start(self):
         host = ("--host", "127.0.0.1", "--no-dashboard")
         self.scheduler = self._process("scheduler", "--port", str(self.port), *host)
+        wait_for(self._answers)
         own = ("--nthreads", "1", "--no-nanny", "--death-timeout", "60")
         self.workers = [self._process("worker", self.address, *own, *host) for _ in range(2)]
+        with Client(self.address) as client:
+            client.wait_for_workers(2, timeout=120)
 
     def stop(self):
         for process in (*self.workers, self.scheduler):
             process.kill()
             process.wait()
+
+    def _answers(self):
+        with socket.socket() as tried:
+            return tried.connect_ex(("127.0.0.1", self.port)) == 0
 
     def _process(self, *arguments):
         program = [sys.executable, "-m", "dask", *arguments]
@@ -73,8 +81,16 @@ def begun(out):
     return [path.parent for path in out.glob("*/checkpoint.h5") if not (path.parent / "summary.json").exists()]
 
 
+def in_the_middle(worker, out):
+    """Whether a process holds the folder of a run that has begun and is not finished."""
+    folders = {str(folder) for folder in begun(out)}
+    with contextlib.suppress(FileNotFoundError):
+        return any(os.readlink(opened) in folders for opened in os.scandir(f"/proc/{worker.pid}/fd"))
+    return False
+
+
 def wait_for(condition):
-    until = time.monotonic() + 60.0
+    until = time.monotonic() + 120.0
     while not condition():
         assert time.monotonic() < until
         time.sleep(0.01)
@@ -105,13 +121,22 @@ def test_members_that_fail_are_told_and_the_others_go_on(processes, tmp_path):
 
 
 def test_runs_of_a_killed_worker_are_repeated(processes, tmp_path):
+    killed = []
+
+    def killed_in_the_middle():
+        for worker in processes.workers:
+            if in_the_middle(worker, tmp_path):
+                worker.kill()
+                killed.append(worker)
+                break
+        return killed
+
     def kill_in_the_middle(outcome):
-        if all(worker.poll() is None for worker in processes.workers):
-            wait_for(lambda: len(begun(tmp_path)) == 2)
-            processes.workers[0].kill()
+        if not killed:
+            wait_for(killed_in_the_middle)
 
     outcomes = run_members(members(4), tmp_path, scheduler=processes.address, report=kill_in_the_middle)
-    assert processes.workers[0].wait() == -signal.SIGKILL
+    assert killed[0].wait() == -signal.SIGKILL
     assert [outcome.reason for outcome in outcomes] == [""] * 4
     assert len(finished_at(outcomes)) == 4
     assert begun(tmp_path) == []

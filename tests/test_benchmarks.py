@@ -28,7 +28,7 @@ def test_one_command_measures_prints_and_stores_everything(tmp_path):
     numbers = json.loads((tmp_path / "benchmark.json").read_text())
     page = (tmp_path / "benchmark.md").read_text()
     parts = {"machine", "roofline", "passes", "yardstick", "yardstick-3d", "sizes", "domain", "memory", "plans"}
-    assert set(numbers) == parts | ({"cores"} if cores() > 1 else set())
+    assert set(numbers) == parts | ({"cores", "sweep"} if cores() > 1 else set())
     for tables in numbers.values():
         for title in tables:
             assert title in done.stdout

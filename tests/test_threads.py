@@ -52,7 +52,7 @@ import os
 before = dict(os.environ)
 import grainlaw, grainlaw.materials
 print(len(os.listdir("/proc/self/task")))
-import numpy, matplotlib, numba, pyvista, scipy.spatial
+import distributed, numpy, matplotlib, numba, pyarrow.csv, pyvista, scipy.spatial
 from_libraries, libraries = len(os.listdir("/proc/self/task")), dict(os.environ)
 for name in grainlaw.__all__:
     getattr(grainlaw, name)

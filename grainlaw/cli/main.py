@@ -20,6 +20,7 @@ from grainlaw.cli.plan_command import plan
 from grainlaw.cli.report_command import report
 from grainlaw.cli.run_command import run
 from grainlaw.cli.scenes_command import scenes
+from grainlaw.cli.sweep_command import sweep
 from grainlaw.cli.validate_command import validate
 from grainlaw.materials import InputError, SimulationError
 from grainlaw.materials.errors import InputWarning
@@ -38,6 +39,7 @@ app.command("calibrate")(calibrate)
 app.command("scenes")(scenes)
 app.command("run")(run)
 app.command("plan")(plan)
+app.command("sweep")(sweep)
 app.command("compare")(compare)
 app.command("validate")(validate)
 app.command("report")(report)

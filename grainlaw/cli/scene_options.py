@@ -1,8 +1,7 @@
 """The scene argument and the values set on top of it, shared by the commands that take a scene."""
 
-import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -29,17 +28,10 @@ SetValues = Annotated[
 
 def load_scene(path: Path, set_values: list[str] | None) -> "Scene":
     """The validated scene with the set values on top. Raises InputError."""
+    from grainlaw.mpm_core.scene.file import value_of_text
     from grainlaw.mpm_core.scene.model import Scene
     from grainlaw.mpm_core.scene.shipped import scene_file
 
-    values = {key: _value(text) for key, text in assigned(set_values).items()}
+    values = {key: value_of_text(text) for key, text in assigned(set_values).items()}
     # A shipped scene is called by its name in messages, not by its place in the installation.
     return Scene.load(scene_file(path), values, str(path))
-
-
-def _value(text: str) -> Any:
-    """A value as TOML would read it; what is no TOML value is a string."""
-    try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
-        return text

@@ -29,7 +29,7 @@ class Scene(model.Scene):
         if source is None:
             super().__init__(**tables)
             return
-        content, name = _content(source, {**(changes or {}), **tables})
+        content, name = scene_content(source, {**(changes or {}), **tables})
         # Checked first, because its errors are one line each.
         model.Scene.from_dict(content, name)
         super().__init__(**content)
@@ -41,8 +41,8 @@ def as_scene(source: SceneSource) -> model.Scene:
     return source if isinstance(source, model.Scene) else Scene(source)
 
 
-def _content(source: SceneSource, changes: Mapping[str, Any]) -> tuple[dict[str, Any], str]:
-    """The tables of a scene with changes on top, and where they came from for messages."""
+def scene_content(source: SceneSource, changes: Mapping[str, Any]) -> tuple[dict[str, Any], str]:
+    """The tables of a scene with changes on top, and where they came from for messages. Raises InputError."""
     if isinstance(source, model.Scene):
         return with_values(source.model_dump(mode="json", exclude_none=True), changes), source.source
     if isinstance(source, Mapping):

@@ -5,6 +5,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+import dask
 from distributed import Client, LocalCluster
 
 from grainlaw.materials import InputError
@@ -22,26 +23,27 @@ def workers_of(scheduler: str | None, workers: int | None) -> Iterator[Client]:
     Each process of this machine has one thread and its share of the memory, beyond which it is started again.
     Raises InputError for an address that does not answer, and where processes here do not start.
     """
-    with _silent():
-        if scheduler is None:
-            with _own_cluster(workers or cores()) as cluster, Client(cluster) as client:
-                yield client
-        else:
-            with _client_of(scheduler) as client:
-                _warn_of_workers(client, scheduler)
-                yield client
+    _quieten()
+    if scheduler is None:
+        with _own_cluster(workers or cores()) as cluster, Client(cluster) as client:
+            yield client
+    else:
+        with _client_of(scheduler) as client:
+            _warn_of_workers(client, scheduler)
+            yield client
 
 
 def _own_cluster(workers: int) -> LocalCluster:
     try:
-        return LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            processes=True,
-            memory_limit="auto",
-            dashboard_address=None,
-            silence_logs=logging.CRITICAL,
-        )
+        with dask.config.set({"distributed.worker.profile.enabled": False}):
+            return LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                memory_limit="auto",
+                dashboard_address=":0",
+                silence_logs=logging.CRITICAL,
+            )
     except RuntimeError as error:
         # Each process imports the script that starts it.
         hint = "a script has to call this below `if __name__ == '__main__':`"
@@ -65,13 +67,10 @@ def _warn_of_workers(client: Client, scheduler: str) -> None:
         warnings.warn(text, InputWarning, stacklevel=1)
 
 
-@contextmanager
-def _silent() -> Iterator[None]:
-    """Without what Dask logs of connections and workers that come and go: what matters of it is told as an outcome."""
-    logger = logging.getLogger("distributed")
-    before = logger.level
-    logger.setLevel(logging.CRITICAL)
-    try:
-        yield
-    finally:
-        logger.setLevel(before)
+def _quieten() -> None:
+    """Keep Dask from logging connections and workers that come and go: what matters of it is told as an outcome.
+
+    For good, because connections that are given up are still logged after their end.
+    """
+    for name in ("distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)

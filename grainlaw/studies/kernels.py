@@ -19,8 +19,8 @@ try:
 except ImportError:  # Windows has no such module; there runs do not wait for one another.
     fcntl = None  # type: ignore[assignment]
 
-# Some kernels are first needed when material has moved. After so long without compiling anything [s], all are taken to
-# be there.
+# Some kernels are first needed when material has moved. After so much processor time without compiling anything [s],
+# all are taken to be there.
 CALM = 5.0
 
 
@@ -48,16 +48,16 @@ class _Ahead(Listener):
 
     def __init__(self, tell: Callable[[], None]) -> None:
         self._tell: Callable[[], None] | None = tell
-        self._compiled = time.perf_counter()
+        self._compiled = time.thread_time()
 
     def on_start(self, event: Any) -> None:
         pass
 
     def on_end(self, event: Any) -> None:
-        self._compiled = time.perf_counter()
+        self._compiled = time.thread_time()
 
     def step(self) -> None:
-        if time.perf_counter() - self._compiled > CALM:
+        if time.thread_time() - self._compiled > CALM:
             self.tell()
 
     def tell(self) -> None:

@@ -43,6 +43,14 @@ def with_values(content: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
     return changed
 
 
+def value_of_text(text: str) -> Any:
+    """A value as TOML would read it; what is no TOML value is a string."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
 def _take_in_parameter_file(table: Any, scene: Path) -> None:
     """Complete a table of material constants by the TOML file that its key `parameters` names, if it has one."""
     name = table.pop("parameters", None) if isinstance(table, dict) else None
