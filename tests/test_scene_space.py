@@ -172,7 +172,7 @@ def test_more_cells_than_memory_are_refused_in_3d():
 
 
 def test_none_is_no_ratio_in_plane_strain():
-    with pytest.raises(InputError, match="out_of_plane_ratio"):
+    with pytest.raises(InputError, match=r"body\.0\.initial_stress\.out_of_plane_ratio = None: allowed: a number in"):
         Scene.from_dict(BLOCK | {"body": [BLOCK["body"][0] | {"initial_stress": {"out_of_plane_ratio": None}}]})
 
 

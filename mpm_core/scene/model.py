@@ -11,7 +11,7 @@ from pydantic import Field, PrivateAttr, ValidationError, field_validator, model
 from grainlaw.materials import InputError, get_material
 from grainlaw.materials.errors import nearest_name
 from grainlaw.materials.law import Law
-from grainlaw.mpm_core.scene.body_section import BodySection
+from grainlaw.mpm_core.scene.body_section import BodySection, InitialStressSection
 from grainlaw.mpm_core.scene.boundary import BoundarySection
 from grainlaw.mpm_core.scene.errors import described
 from grainlaw.mpm_core.scene.file import read_content
@@ -247,12 +247,17 @@ class Scene(Section):
                     f"body.{number}.lattice_shift = {body.lattice_shift}: allowed: {self.in_space.axes} numbers, one "
                     "for each axis"
                 )
-            if (self.space == "plane_strain") == (body.initial_stress.out_of_plane_ratio is None):
-                raise ValueError(
-                    f"body.{number}.initial_stress.out_of_plane_ratio belongs to space = 'plane_strain'; in "
-                    f"space = '{self.space}' horizontal_ratio sets both horizontal stresses"
-                )
+            self._refuse_ratio_out_of_plane(f"body.{number}.initial_stress.out_of_plane_ratio", body.initial_stress)
         return self
+
+    def _refuse_ratio_out_of_plane(self, key: str, stress: InitialStressSection) -> None:
+        if self.space == "plane_strain" and stress.out_of_plane_ratio is None:
+            raise ValueError(f"{key} = None: allowed: a number in space = 'plane_strain'")
+        if self.space != "plane_strain" and stress.out_of_plane_ratio is not None:
+            raise ValueError(
+                f"{key} belongs to space = 'plane_strain'; in space = '{self.space}' horizontal_ratio sets both "
+                "horizontal stresses"
+            )
 
     def _refuse_obstacles(self) -> None:
         names = [obstacle.name for obstacle in self.obstacle]
