@@ -12,7 +12,7 @@ import grainlaw as gl
 from grainlaw.materials import InputError
 from grainlaw.mpm_core.output.summary import read_summary
 from grainlaw.studies.batch import Outcome
-from grainlaw.studies.design import grid_design, hypercube_design, refuse_bad_values, sobol_design
+from grainlaw.studies.design import drawn_design, grid_design, hypercube_design, refuse_bad_values, sobol_design
 from grainlaw.studies.sensitivity import indices, main_effect, rank_correlation
 from grainlaw.studies.variation import variations_of
 
@@ -76,6 +76,40 @@ def test_each_part_of_a_range_holds_one_run_of_a_hypercube():
     assert sorted(b) == [1] * 4 + [2] * 4
     assert hypercube_design(asked, 8, seed=3) == found
     assert hypercube_design(asked, 8, seed=4) != found
+
+
+CALIBRATED = """
+static_friction = 0.5
+dynamic_friction = 0.9
+inertial_number_constant = 0.279
+bulk_modulus = 2e4
+poisson_ratio = 0.2
+grain_density = 2450.0
+grain_diameter = 0.005
+
+[calibration]
+law = "mu_i_lc"
+sources = ["shear.csv"]
+drawn = ["static_friction", "dynamic_friction"]
+logarithmic = [false, false]
+covariance = [[1e-4, -1e-4], [-1e-4, 4e-4]]
+"""
+
+
+def test_draws_follow_the_covariance_in_every_material_of_the_law(tmp_path):
+    path = tmp_path / "parameters.toml"
+    path.write_text(CALIBRATED)
+    materials = {"sand": {"law": "mu_i_lc"}, "mu_i_lc": {}, "linear_elastic": {}}
+    found = drawn_design({"material": materials}, path, 400, seed=0)
+    assert found.keys == tuple(
+        f"material.{name}.{key}" for name in ("sand", "mu_i_lc") for key in ("static_friction", "dynamic_friction")
+    )
+    rows = np.array(found.rows)
+    np.testing.assert_array_equal(rows[:, :2], rows[:, 2:])
+    np.testing.assert_allclose(rows.mean(axis=0)[:2], [0.5, 0.9], atol=4e-3)
+    np.testing.assert_allclose(np.cov(rows[:, :2].T), [[1e-4, -1e-4], [-1e-4, 4e-4]], rtol=0.3)
+    with pytest.raises(InputError, match="is of the law mu_i_lc, which no material of the scene has"):
+        drawn_design({"material": {"linear_elastic": {}}}, path, 4, seed=0)
 
 
 @pytest.mark.parametrize(
@@ -203,6 +237,12 @@ def test_a_sweep_that_goes_on_repeats_nothing_finished(swept, monkeypatch):
     assert [member.name for member in left] == ["01"]
     assert done.returncode == 0
     assert "  01: again" in done.stdout.splitlines()
+    assert (folder / "sweep.csv").read_text().splitlines()[3:] == table.splitlines()[3:]
+    found = gl.sweep(FALLING, folder, {"body.0.density": "500:1000:2", "time.step": [1e-3, 1.7e-2]}, resume=True)
+    assert [outcome.reason for outcome in found.failed] == ["again"]
+    frame = found.to_frame()
+    assert list(frame["body.0.density"]) == [500, 500, 1000, 1000]
+    assert frame.attrs["units"]["height"] == "m"
     assert (folder / "sweep.csv").read_text().splitlines()[3:] == table.splitlines()[3:]
 
 
