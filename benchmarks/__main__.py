@@ -87,7 +87,7 @@ FULL = Effort(
     pass_steps=300,
     working_sets=(2**18, 2**20, 2**22, 2**24, 2**26, 3 * 2**28),
     scenes=FORECAST_SCENES,
-    sweep=(0.025, 1.0, 8),
+    sweep=(0.025, 1.5, 8),
 )
 QUICK = Effort(
     cell_size=0.05,

@@ -160,6 +160,8 @@ def test_sobol_indices_hold_those_of_a_function_that_knows_them():
     assert np.all(abs(found.total - total) < 1.5 * found.total_interval)
     assert max(found.first_interval.max(), found.total_interval.max()) < 0.2
     assert found.runs == len(design.rows) == 256 * 5
+    np.testing.assert_array_equal(indices(design, result).total_interval, found.total_interval)
+    assert sobol_design(variations_of({"a": "0:1"}), 4, seed=0) == sobol_design(variations_of({"a": "0:1"}), 4, seed=0)
     # Base samples with a failed run are left out.
     result[7] = np.nan
     assert indices(design, result).runs == 255 * 5

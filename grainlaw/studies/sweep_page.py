@@ -47,9 +47,10 @@ def page_of(design: Design, table: pa.Table, title: str, command: str) -> Page:
 def _failures(design: Design, table: pa.Table) -> Iterator[Section]:
     rows = [row for row in table.to_pylist() if row["verdict"] == FAILED]
     if rows:
-        columns = ("run", *design.keys, "reason")
-        cells = tuple(tuple(_cell(row[name]) for name in columns) for row in rows)
-        yield Section("Failed runs", tables=(Rows("Failed runs", "", columns, cells),))
+        cells = tuple(
+            (row["run"], row["reason"], ", ".join(f"{key} = {_cell(row[key])}" for key in design.keys)) for row in rows
+        )
+        yield Section("Failed runs", tables=(Rows("Failed runs", "", ("run", "reason", "values"), cells),))
 
 
 def _results(design: Design, table: pa.Table) -> Iterator[Section]:

@@ -55,8 +55,8 @@ def label_of(name: str, unit: str) -> str:
 
 
 def _panels(count: int) -> tuple[Figure, list[Axes]]:
-    columns = min(PER_ROW, count)
-    rows = -(-count // columns)
+    rows = -(-count // PER_ROW)
+    columns = -(-count // rows)
     figure = Figure(figsize=(WIDTH * columns + 0.4, HEIGHT * rows), layout="constrained")
     panels = list(figure.subplots(rows, columns, squeeze=False, sharey=True).flat)
     for axes in panels[count:]:
