@@ -8,15 +8,16 @@ import subprocess
 import sys
 import threading
 import time
+from types import SimpleNamespace
 
 import pytest
-from distributed import Client
+from distributed import Client, KilledWorker, get_worker
 from scenes_for_tests import BLOCK, changed
 
 from grainlaw.materials import InputError, SimulationError
 from grainlaw.mpm_core import Scene, run
 from grainlaw.studies import cluster, kernels
-from grainlaw.studies.batch import Member, Outcome, run_members
+from grainlaw.studies.batch import Member, Outcome, _reason, _say_once_when_it_compiles, run_members
 from grainlaw.studies.kernels import compiled_once
 
 # A block that bounces for about half a second of wall time.
@@ -159,6 +160,17 @@ def test_a_batch_goes_on_after_its_scheduler_was_lost(processes, tmp_path):
     assert finished_at(outcomes).items() >= before.items()
 
 
+def test_that_kernels_are_compiled_is_said_once(processes, monkeypatch):
+    said = []
+    monkeypatch.setattr("grainlaw.progress.say_that_it_compiles", lambda: said.append("compiling"))
+    with Client(processes.address) as client:
+        _say_once_when_it_compiles(client, "batch")
+        told = [client.submit(lambda n: get_worker().log_event("batch", n), n) for n in range(3)]
+        client.gather(told)
+        wait_for(lambda: len(client.get_events("batch")) == 3 and said)
+    assert said == ["compiling"]
+
+
 def test_finished_runs_need_no_worker_and_others_are_not_lost(tmp_path, monkeypatch):
     (member,) = members(1, {"time.end": 0.01})
     run(Scene.from_dict(member.scene), tmp_path / member.name)
@@ -177,6 +189,13 @@ def test_a_scheduler_that_does_not_answer_is_told_in_a_line(tmp_path, monkeypatc
     address = address.format(port=free_port())
     with pytest.raises(InputError, match=f"no scheduler answers at {address} within 1 s"):
         run_members(members(1), tmp_path, scheduler=address)
+
+
+def test_a_run_whose_workers_are_killed_again_and_again_tells_so():
+    killed = SimpleNamespace(exception=lambda: KilledWorker("00", None, 3))
+    assert _reason(killed) == "4 workers were killed with this run, perhaps for their memory"
+    lost = SimpleNamespace(exception=lambda: ModuleNotFoundError("No module named\n'grainlaw'"))
+    assert _reason(lost) == "ModuleNotFoundError: No module named 'grainlaw'"
 
 
 @pytest.fixture

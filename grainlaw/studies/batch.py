@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
-from distributed import Client, Future, as_completed
+from distributed import Client, Future, as_completed, get_worker
 from distributed.scheduler import KilledWorker
 
+from grainlaw import progress
 from grainlaw.face.laws import load_plugin
 from grainlaw.materials import InputError, SimulationError, registry
 from grainlaw.materials.errors import InputWarning
@@ -21,6 +22,7 @@ from grainlaw.mpm_core.output.prepare import OWN_FILES
 from grainlaw.mpm_core.output.run_folder import SCENE_NAME
 from grainlaw.mpm_core.output.summary import SUMMARY_NAME
 from grainlaw.mpm_core.scene.model import Scene
+from grainlaw.mpm_core.stepping.compilation import noticed_compilation
 from grainlaw.mpm_core.stepping.resumed_scene import is_finished, resumed_scene
 from grainlaw.mpm_core.stepping.run import run
 from grainlaw.studies.cluster import workers_of
@@ -116,6 +118,7 @@ def _is_finished(member: Member, folder: Path) -> bool:
 def _outcomes(client: Client, members: Sequence[Member], out: Path) -> Iterator[Outcome]:
     """Hand members to the workers; yield each outcome as it is there."""
     batch, plugins, address = uuid4().hex, _files_of_laws(), client.scheduler_info(n_workers=0)["address"]
+    _say_once_when_it_compiles(client, batch)
     futures = {
         client.submit(
             perform, dict(member.scene), out / member.name, plugins, batch, key=f"{member.name}-{batch}", pure=False
@@ -134,6 +137,17 @@ def _outcomes(client: Client, members: Sequence[Member], out: Path) -> Iterator[
             yield Outcome(member.name, folder, reason)
     finally:
         client.cancel(list(futures), force=True)
+
+
+def _say_once_when_it_compiles(client: Client, batch: str) -> None:
+    heard: list[object] = []
+
+    def hear(event: object) -> None:
+        heard.append(event)
+        if len(heard) == 1:
+            progress.say_that_it_compiles()
+
+    client.subscribe_topic(batch, hear)
 
 
 def _reason(future: "Future[str]") -> str:
@@ -186,7 +200,8 @@ def perform(scene: dict[str, Any], folder: Path, plugins: Sequence[Path], batch:
             for path in plugins:
                 load_plugin(path)
             described = Scene.from_dict(scene, folder.name)
-            with compiled_once(described, batch) as stepped:
+            compiling = noticed_compilation(lambda: get_worker().log_event(batch, "compiling"))
+            with compiled_once(described, batch) as stepped, compiling:
                 _run(described, folder, stepped)
     except (InputError, SimulationError) as error:
         return str(error)
