@@ -94,11 +94,11 @@ def _judge(folders: list[Path], dem: list[Path], out: Path | None) -> None:
 
 def _draw(runs: list[tuple[str, "RunFolder"]], out: Path, field: str) -> None:
     from grainlaw.mpm_core.output.pictures import draw_history
+    from grainlaw.mpm_core.output.shown_field import usual_limits
     from grainlaw.mpm_core.output.snapshots import draw_snapshots
 
     out.mkdir(parents=True, exist_ok=True)
-    limits = (0.0, 3.0) if field == "shear_strain" else None
-    draw_snapshots(runs, out / "snapshots.png", field, limits)
+    draw_snapshots(runs, out / "snapshots.png", field, usual_limits(field))
     draw_history(runs, out / "history.png")
     for picture in ("snapshots.png", "history.png"):
         typer.echo(f"  {out / picture}")

@@ -13,7 +13,6 @@ from grainlaw.mpm_core.output.forces import FORCES_NAME
 from grainlaw.mpm_core.output.frame import Frame
 from grainlaw.mpm_core.output.history import energy_unit, history_columns
 from grainlaw.mpm_core.output.materials_of_points import Materials, materials_of
-from grainlaw.mpm_core.output.obstacle_drawing import boxes_within, draw_obstacles
 from grainlaw.mpm_core.output.obstacle_series import obstacles_at
 from grainlaw.mpm_core.output.picture_style import (
     LEGEND_HEIGHT,
@@ -27,8 +26,10 @@ from grainlaw.mpm_core.output.picture_style import (
     scalar_values,
     time_label,
 )
-from grainlaw.mpm_core.output.point_image import Box, bounding_box, draw_points, point_spacing, view_box
+from grainlaw.mpm_core.output.point_image import Box, point_spacing, view_box
 from grainlaw.mpm_core.output.run_folder import RunFolder
+from grainlaw.mpm_core.output.section import Section
+from grainlaw.mpm_core.output.shown_field import shown_field, usual_limits
 from grainlaw.mpm_core.output.snapshots import draw_snapshots
 from grainlaw.mpm_core.output.solid_picture import draw_solid_frame
 from grainlaw.mpm_core.output.vtp import ObstacleFrame
@@ -47,7 +48,6 @@ _ENERGIES = (
 )
 _OF_SOME = ("obstacle_work", "outflow")
 _SPREADING = 1.1
-USUAL_FIELD, USUAL_LIMITS = "shear_strain", (0.0, 3.0)
 
 
 def draw_frame(
@@ -69,14 +69,14 @@ def draw_frame(
     Raises InputError if the frame does not hold the field.
     """
     shown = frame.field(field)
-    values = scalar_values(shown)
+    scale = color_scale([scalar_values(shown)], limits)
     spacing = point_spacing(frame.positions) if spacing is None else spacing
-    box = view_box([bounding_box(frame.positions, spacing, cut), *boxes_within(obstacles, domain, cut)])
     groups = materials.of_points(frame) if materials is not None else None
+    section = Section(frame, spacing, groups, cut, obstacles, domain)
+    box = view_box(section.boxes)
     with paper_picture(path, _height(box) + LEGEND_HEIGHT * (groups is not None), "compressed") as figure:
         axes = figure.subplots()
-        image = draw_points(axes, frame.positions, values, spacing, color_scale([values], limits), groups, cut)
-        draw_obstacles(axes, obstacles, cut, box)
+        image = section.draw(axes, field, scale, box)
         across, up = cut.labels
         axes.set(xlabel=across, ylabel=up, xlim=box[:2], ylim=box[2:], title=time_label(frame.time))
         color_bar(figure, image, [axes], field_label(shown))
@@ -117,8 +117,8 @@ def write_run_pictures(folder: Path) -> list[Path]:
     """
     run = RunFolder(folder)
     last = _last_with_points(run)
-    field = run.scene.get("output", {}).get("picture_field") or _usual_field(last)
-    limits = USUAL_LIMITS if field == USUAL_FIELD else None
+    field = shown_field(run, last)
+    limits = usual_limits(field)
     written = [folder / "final.png", folder / "history.png"]
     spacing, cuts = point_spacing(run.load_frame(0).positions), cuts_of(run)
     obstacles = obstacles_at(folder, last.time)
@@ -145,11 +145,6 @@ def _last_with_points(run: RunFolder) -> Frame:
         if len(frame.positions) > 0:
             return frame
     return run.load_frame(0)
-
-
-def _usual_field(frame: Frame) -> str:
-    held = [field.name for field in frame.fields]
-    return held[0] if held and USUAL_FIELD not in held else USUAL_FIELD
 
 
 def _height(box: Box) -> float:

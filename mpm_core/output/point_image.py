@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
@@ -36,6 +38,10 @@ class ColorScale:
     map_name: str
     lower: float
     upper: float
+
+    def mappable(self) -> ScalarMappable:
+        """What a colour bar needs of it."""
+        return ScalarMappable(Normalize(self.lower, self.upper), self.map_name)
 
 
 def point_spacing(positions: NDArray[np.float64]) -> float:
@@ -82,15 +88,18 @@ def draw_points(
     scale: ColorScale,
     groups: NDArray[np.int64] | None = None,
     cut: Cut = PLANE,
+    pixel: float | None = None,
 ) -> AxesImage:
     """Draw points of shape (points, 3), coloured by values of shape (points,), in the x-y plane or on a cut.
 
     `groups`, shape (points,), are numbers of materials: each is drawn with an outline of its own colour.
-    Everything outside the body stays blank. The cost grows with the pixels, hardly with the points.
+    Everything outside the body stays blank. The cost grows with the pixels, hardly with the points; `pixel` is the
+    edge of one [m], by default so that there are enough of them for a picture of the paper's width.
     """
     left, right, bottom, top = bounding_box(positions, spacing, cut)
-    across = _PIXELS_ACROSS if cut.normal is None else _PIXELS_ACROSS_CUT
-    pixel = max(right - left, top - bottom) / across
+    if pixel is None:
+        across = _PIXELS_ACROSS if cut.normal is None else _PIXELS_ACROSS_CUT
+        pixel = max(right - left, top - bottom) / across
     reach = max(REACH_IN_SPACINGS * spacing, 2.0 * pixel)
     x = np.arange(left - reach - pixel, right + reach + pixel, pixel)
     y = np.arange(bottom - reach - pixel, top + reach + pixel, pixel)

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from grainlaw.mpm_core.output.cut import Cut
 from grainlaw.mpm_core.output.frame import Frame
 from grainlaw.mpm_core.output.materials_of_points import Materials
-from grainlaw.mpm_core.output.obstacle_drawing import boxes_within, draw_obstacles
 from grainlaw.mpm_core.output.picture_style import (
     LEGEND_HEIGHT,
     PAPER_WIDTH,
@@ -21,8 +20,9 @@ from grainlaw.mpm_core.output.picture_style import (
     scalar_values,
     time_label,
 )
-from grainlaw.mpm_core.output.point_image import bounding_box, draw_points, view_box
+from grainlaw.mpm_core.output.point_image import view_box
 from grainlaw.mpm_core.output.rendering import View, draw_view, rendered
+from grainlaw.mpm_core.output.section import Section
 from grainlaw.mpm_core.output.vtp import ObstacleFrame
 
 # Of the paper's width; the rest is the colour bar.
@@ -53,9 +53,8 @@ def draw_solid_frame(
     groups = materials.of_points(frame)
     view = View(frame.positions, values, spacing, scale, domain)
     image = rendered(view)
-    boxes = [
-        view_box([bounding_box(frame.positions, spacing, cut), *boxes_within(obstacles, domain, cut)]) for cut in cuts
-    ]
+    sections = [Section(frame, spacing, groups, cut, obstacles, domain) for cut in cuts]
+    boxes = [view_box(section.boxes) for section in sections]
     widths = [box[1] - box[0] for box in boxes]
     height_of_view = _HIGHEST_VIEW
     if image is not None:
@@ -69,12 +68,11 @@ def draw_solid_frame(
         whole = draw_view(figure, grid[0, :], view, image, _HIGHEST_VIEW)
         whole.set_title(time_label(frame.time))
         panels = []
-        for number, (cut, box) in enumerate(zip(cuts, boxes, strict=True)):
+        for number, (section, box) in enumerate(zip(sections, boxes, strict=True)):
             axes = figure.add_subplot(grid[1, number])
-            drawn = draw_points(axes, frame.positions, values, spacing, scale, groups, cut)
-            draw_obstacles(axes, obstacles, cut, box)
-            across, up = cut.labels
-            axes.set(xlabel=across, ylabel=up, xlim=box[:2], ylim=box[2:], title=cut.name)
+            drawn = section.draw(axes, field, scale, box)
+            across, up = section.cut.labels
+            axes.set(xlabel=across, ylabel=up, xlim=box[:2], ylim=box[2:], title=section.cut.name)
             panels.append(axes)
         color_bar(figure, drawn, [whole, *panels], field_label(shown))
         if groups is not None:
