@@ -224,7 +224,7 @@ def test_a_scene_that_does_not_tell_its_domain_is_refused_in_a_line(tmp_path, sp
     [
         "",
         "import os; os.abort()",
-        "import sys; open(sys.argv[2], 'w').write('none')",
+        "import pathlib, sys; (pathlib.Path(sys.argv[1]) / 'view_000000.png').write_text('none')",
         "import time; time.sleep(60)",
     ],
 )

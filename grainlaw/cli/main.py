@@ -15,6 +15,7 @@ from grainlaw.cli.compare_command import compare
 from grainlaw.cli.dem_command import dem
 from grainlaw.cli.element_command import element
 from grainlaw.cli.materials_command import materials
+from grainlaw.cli.movie_command import movie
 from grainlaw.cli.new_law_command import new_law
 from grainlaw.cli.plan_command import plan
 from grainlaw.cli.report_command import report
@@ -22,6 +23,7 @@ from grainlaw.cli.run_command import run
 from grainlaw.cli.scenes_command import scenes
 from grainlaw.cli.sweep_command import sweep
 from grainlaw.cli.validate_command import validate
+from grainlaw.cli.view_command import view
 from grainlaw.materials import InputError, SimulationError
 from grainlaw.materials.errors import InputWarning
 
@@ -41,6 +43,8 @@ app.command("run")(run)
 app.command("plan")(plan)
 app.command("sweep")(sweep)
 app.command("compare")(compare)
+app.command("movie")(movie)
+app.command("view")(view)
 app.command("validate")(validate)
 app.command("report")(report)
 app.command("new-law")(new_law)

@@ -79,5 +79,5 @@ def _print_result(folder: Path, summary: "RunSummary", amount: str) -> None:
     for name in ("run.pvd", "run.vtkhdf", "history.csv", "summary.json"):
         if (folder / name).exists():
             typer.echo(f"  {folder / name}")
-    for picture in sorted(folder.glob("*.png")):
+    for picture in [*sorted(folder.glob("*.png")), *folder.glob("movie.mp4")]:
         typer.echo(f"  {picture}")

@@ -79,6 +79,22 @@ class Run:
         """The files of the pictures that the run drew, by name: final, history, snapshots."""
         return {path.stem: path for path in sorted(self.path.glob("*.png"))}
 
+    def movie(self, path: str | Path | None = None, field: str | None = None) -> Path:
+        """Make a film of the frames and return its file: .mp4 or .gif, by default movie.mp4 in the folder.
+
+        `field` is what colours show, by default that of the pictures. Raises InputError for another ending, an unknown
+        field, and where nothing encodes the film.
+        """
+        from grainlaw.mpm_core.output.film import FILM_NAME, write_film
+
+        return write_film([(self.path.resolve().name, self.folder)], Path(path or self.path / FILM_NAME), field)
+
+    def view(self, path: str | Path | None = None) -> Path:
+        """Write the page that plays the frames in a browser and return its file, by default view.html in the folder."""
+        from grainlaw.player.page import PAGE_NAME, write_page
+
+        return write_page(self.folder, Path(path or self.path / PAGE_NAME))
+
     def plot(self, *names: str, path: str | Path | None = None) -> "Figure":
         """Columns of the history over time, by default runout and heights; written to `path` if one is given."""
         from grainlaw.face.figure import NotebookFigure

@@ -41,7 +41,7 @@ def draw_obstacles(axes: Axes, obstacles: Sequence[ObstacleFrame], cut: Cut, box
     # Beyond the edge of the picture, where no line is to be seen.
     frame = frame + 0.1 * (frame - frame.mean(axis=0))
     for obstacle in obstacles:
-        loops = _loops(obstacle.outline, cut)
+        loops = loops_of(obstacle.outline, cut)
         if cut.is_mirrored:
             loops = [*loops, *(loop[::-1] * [-1.0, 1.0] for loop in loops)]
         if obstacle.hollow:
@@ -58,7 +58,7 @@ def _turned(loop: Floats, way: float) -> Floats:
     return loop if twice_area * way > 0.0 else loop[::-1]
 
 
-def _loops(outline: Outline, cut: Cut) -> list[Floats]:
+def loops_of(outline: Outline, cut: Cut) -> list[Floats]:
     """The closed lines of an outline in the plane, or where a cut meets it."""
     if not outline.faces:
         return []

@@ -1,7 +1,7 @@
 """What all pictures share: width, font size, colours, labels with units, and how they reach the disk."""
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any, Literal
 
@@ -28,10 +28,15 @@ _DOTS_PER_INCH = 250
 _STYLE: Any = {"font.size": 8.0, "font.family": "serif", "mathtext.fontset": "cm", "axes.linewidth": 0.6}
 
 
+def paper_style() -> AbstractContextManager[None]:
+    """Fonts and lines of all pictures while it lasts."""
+    return rc_context(_STYLE)
+
+
 @contextmanager
 def paper_picture(path: Path, height: float, layout: Literal["compressed", "constrained"]) -> Iterator[Figure]:
     """Yield an empty figure of the paper's width and the given height [inch]; write it as PNG when all went well."""
-    with rc_context(_STYLE):
+    with paper_style():
         figure = Figure(figsize=(PAPER_WIDTH, height), layout=layout)
         yield figure
         # The ticks follow from the size of the axes that the first layout gives: the second one leaves room for them.
@@ -56,9 +61,10 @@ def quantity_label(name: str, unit: str) -> str:
     return words if unit in {"", "1"} else f"{words} [{unit}]"
 
 
-def time_label(time: float) -> str:
-    """A time [s] as it stands on a picture."""
-    return rf"$t = {time:.3g}\,\mathrm{{s}}$"
+def time_label(time: float, decimals: int | None = None) -> str:
+    """A time [s] as it stands on a picture: by three digits, or where it is one of many with as many decimals."""
+    shown = f"{time:.3g}" if decimals is None else f"{time:.{decimals}f}"
+    return rf"$t = {shown}\,\mathrm{{s}}$"
 
 
 def color_scale(values: Sequence[NDArray[np.float64]], limits: tuple[float, float] | None) -> ColorScale:

@@ -24,6 +24,7 @@ _FLOOR_TOLERANCE = 0.02
 _PIXELS_ACROSS, _PIXELS_ACROSS_CUT = 900, 600
 # None of them on the colour map, from black over copper to light brown.
 _OUTLINE_COLORS = ("tab:blue", "tab:green", "tab:red", "tab:purple", "tab:cyan", "tab:pink")
+OUTLINE_COLORS = len(_OUTLINE_COLORS)
 _OUTLINE_WIDTH = 1.0
 _POINTS_SAMPLED = 5000
 

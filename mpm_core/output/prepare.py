@@ -19,7 +19,7 @@ from grainlaw.mpm_core.output.summary import SUMMARY_NAME
 from grainlaw.mpm_core.output.vtkhdf import VTKHDF_NAME, append_frame, drop_after
 from grainlaw.mpm_core.simulation import Simulation
 
-OF_THE_END = (SUMMARY_NAME, "final.png", "history.png", "snapshots.png", "forces.png")
+OF_THE_END = (SUMMARY_NAME, "final.png", "history.png", "snapshots.png", "forces.png", "movie.mp4", "view.html")
 OWN_FILES = (
     SCENE_NAME,
     VTKHDF_NAME,

@@ -143,6 +143,15 @@ class OutputSection(Section):
     vtu: bool = Field(default=True, description="write points_NNNNNN.vtu and run.pvd")
     vtkhdf: bool = Field(default=False, description="write all frames to one run.vtkhdf")
     pictures: bool = Field(default=True, description="draw PNG pictures at the end (needs vtu)")
+    movie: bool = Field(
+        default=False, description="make a film of the frames at the end, movie.mp4, by ffmpeg (needs vtu)"
+    )
+
+    @model_validator(mode="after")
+    def _film_has_frames(self) -> "OutputSection":
+        if self.movie and not self.vtu:
+            raise ValueError("movie = true needs the frames that vtu = false leaves out")
+        return self
 
 
 class Scene(Section):

@@ -2,17 +2,20 @@
 
 import math
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 
 from grainlaw.materials import InputError, SimulationError
+from grainlaw.materials.errors import InputWarning
 from grainlaw.mpm_core.output.bounded_points import limited
 from grainlaw.mpm_core.output.checkpoint import Clock, how_to_go_on, refuse_other_laws
 from grainlaw.mpm_core.output.folder_lock import held
 from grainlaw.mpm_core.output.prepare import go_on, new_folder
 from grainlaw.mpm_core.output.recorder import Recorder
+from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.output.summary import FinalState, RunSummary, read_summary, write_summary
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
@@ -91,6 +94,19 @@ def _draw(scene: Scene, folder: Path) -> None:
         from grainlaw.mpm_core.output.pictures import write_run_pictures
 
         write_run_pictures(folder)
+    if scene.output.movie:
+        _film(folder)
+
+
+def _film(folder: Path) -> None:
+    """Make the film of a finished run, which what goes wrong with it must not lose."""
+    from grainlaw.mpm_core.output.film import FILM_NAME, write_film
+
+    try:
+        write_film([(folder.resolve().name, RunFolder(folder))], folder / FILM_NAME)
+    except Exception as error:  # whatever the libraries that draw and encode may raise
+        reason = str(error) if isinstance(error, InputError | SimulationError) else f"{type(error).__name__}: {error}"
+        warnings.warn(f"{folder}: the run is finished, its film is not made: {reason}", InputWarning, stacklevel=2)
 
 
 def built_simulation(scene: Scene, threads: int) -> Simulation:
