@@ -31,7 +31,9 @@ demo: $(INSTALLED)
 			--out $(DEMO)/$$material --overwrite || exit 1; \
 	done
 	@$(BIN)/grainlaw compare $(MATERIALS:%=$(DEMO)/%) --out $(DEMO)/comparison
+	@$(BIN)/grainlaw movie $(MATERIALS:%=$(DEMO)/%) --side-by-side --out $(DEMO)/comparison/collapse.gif
 	@echo "pictures:  $(DEMO)/comparison/*.png, $(DEMO)/*/*.png"
+	@echo "film:      $(DEMO)/comparison/collapse.gif"
 	@echo "ParaView:  $(MATERIALS:%=$(DEMO)/%/run.pvd)"
 	@echo "summaries: $(MATERIALS:%=$(DEMO)/%/summary.json)"
 

@@ -66,8 +66,10 @@ function planeView(width, height, dots) {
   const margin = { left: 52 * dots, right: 12 * dots, bottom: 42 * dots, top: 8 * dots };
   const across = width - margin.left - margin.right, up = height - margin.top - margin.bottom;
   const scale = Math.min(across / (right - left), up / (top - bottom));
-  const area = { width: scale * (right - left), height: scale * (top - bottom), y: margin.top };
-  area.x = margin.left + 0.5 * (across - area.width);
+  // Whole pixels, so that nothing is blurred.
+  const [drawnWidth, drawnHeight] = [right - left, top - bottom].map((length) => Math.round(scale * length));
+  const x = Math.round(margin.left + 0.5 * (across - drawnWidth));
+  const area = { x, y: Math.round(margin.top), width: drawnWidth, height: drawnHeight };
   return { scale, area, x: (x) => area.x + scale * (x - left), y: (y) => area.y + area.height - scale * (y - bottom) };
 }
 
@@ -79,7 +81,7 @@ function drawPlane(width, height, dots) {
   context.rect(area.x, area.y, area.width, area.height);
   context.clip();
   for (const number of content.obstacles.frames[state.frame]) drawLoops(outlines[number], view, dots);
-  drawSquares(view);
+  drawBody(view);
   context.restore();
   drawAxes(view, dots);
 }
@@ -115,31 +117,68 @@ function putLayer(image, x, y) {
   context.drawImage(layer, x, y);
 }
 
-function drawSquares(view) {
+// Points as the solid body that they stand for: grown by their reach, then shrunk back to their outline, so that gaps
+// close which stretching opens; a pixel has the colour of the nearest point.
+function drawBody(view) {
   const { area, scale } = view;
   const image = emptyLayer(area.width, area.height);
-  const pixels = new Uint32Array(image.data.buffer);
-  const palette = Array.from({ length: 256 }, (_, level) => pixelOf(level, 1));
-  // Half as wide again as the distance of points, so that bodies stay solid when they are stretched.
-  const edge = Math.max(1, Math.round(1.5 * scale * content.spacing));
+  const spacing = scale * content.spacing;
+  const near = { reach: Math.max(2 * spacing, 2), width: image.width, height: image.height };
+  near.distances = new Float32Array(image.width * image.height).fill(Infinity);
+  near.levels = new Uint8Array(image.width * image.height);
   const levels = values[state.field];
   for (let point = starts[state.frame]; point < starts[state.frame + 1]; point += 1) {
-    const x = coordinate(point, 0), color = palette[levels[point]];
-    const row = Math.round(view.y(coordinate(point, 1)) - area.y - edge / 2);
-    fillSquare(pixels, image, Math.round(view.x(x) - area.x - edge / 2), row, edge, color);
-    if (content.isMirrored) {
-      fillSquare(pixels, image, Math.round(view.x(-x) - area.x - edge / 2), row, edge, color);
-    }
+    const x = coordinate(point, 0), row = view.y(coordinate(point, 1)) - area.y;
+    claim(near, view.x(x) - area.x, row, levels[point]);
+    if (content.isMirrored) claim(near, view.x(-x) - area.x, row, levels[point]);
+  }
+  const inside = depths(near);
+  const least = near.reach - Math.max(0.75 * spacing, 1);
+  const palette = Array.from({ length: 256 }, (_, level) => pixelOf(level, 1));
+  const pixels = new Uint32Array(image.data.buffer);
+  for (let at = 0; at < pixels.length; at += 1) {
+    if (inside[at] > least) pixels[at] = palette[near.levels[at]];
   }
   putLayer(image, area.x, area.y);
 }
 
-function fillSquare(pixels, image, column, row, edge, color) {
-  const first = Math.max(0, column), last = Math.min(image.width, column + edge);
-  if (first >= last) return;
-  for (let y = Math.max(0, row); y < Math.min(image.height, row + edge); y += 1) {
-    pixels.fill(color, y * image.width + first, y * image.width + last);
+// A point takes the pixels within its reach to which no other one is nearer.
+function claim({ reach, width, height, distances, levels }, x, y, level) {
+  const last = Math.min(height - 1, Math.floor(y + reach));
+  for (let row = Math.max(0, Math.ceil(y - reach)); row <= last; row += 1) {
+    const up = (row - y) * (row - y), half = Math.sqrt(Math.max(0, reach * reach - up));
+    const end = Math.min(width - 1, Math.floor(x + half));
+    for (let column = Math.max(0, Math.ceil(x - half)); column <= end; column += 1) {
+      const square = up + (column - x) * (column - x), at = row * width + column;
+      if (square < distances[at]) {
+        distances[at] = square;
+        levels[at] = level;
+      }
+    }
   }
+}
+
+// How far each pixel that a point has taken is from those that none has, by steps along and across [pixels].
+function depths({ width, height, distances }) {
+  const found = new Float32Array(distances.length);
+  const far = width + height, slant = Math.SQRT2;
+  const relax = (row, column, step) => {
+    const at = row * width + column;
+    if (distances[at] === Infinity) return;
+    let depth = step > 0 ? far : found[at];
+    const before = row - step;
+    if (column - step >= 0 && column - step < width) depth = Math.min(depth, found[at - step] + 1);
+    if (before >= 0 && before < height) {
+      const next = before * width + column;
+      depth = Math.min(depth, found[next] + 1);
+      if (column > 0) depth = Math.min(depth, found[next - 1] + slant);
+      if (column < width - 1) depth = Math.min(depth, found[next + 1] + slant);
+    }
+    found[at] = depth;
+  };
+  for (let row = 0; row < height; row += 1) for (let column = 0; column < width; column += 1) relax(row, column, 1);
+  for (let row = height - 1; row >= 0; row -= 1) for (let column = width - 1; column >= 0; column -= 1) relax(row, column, -1);
+  return found;
 }
 
 function drawAxes(view, dots) {
@@ -148,7 +187,8 @@ function drawAxes(view, dots) {
   context.strokeStyle = context.fillStyle = "#1a1a1a";
   context.lineWidth = dots;
   context.font = `${12 * dots}px system-ui, sans-serif`;
-  context.strokeRect(area.x, area.y, area.width, area.height);
+  const edge = 0.5 * (Math.round(dots) % 2);
+  context.strokeRect(area.x - edge, area.y - edge, area.width + 2 * edge, area.height + 2 * edge);
   const marks = (low, high, length) => {
     const step = roundStep(high - low, Math.max(1, length / (70 * dots)));
     const first = Math.ceil(low / step - 1e-9);
@@ -163,7 +203,7 @@ function drawAxes(view, dots) {
   context.fillText(content.labels[0], area.x + area.width / 2, area.y + area.height + 23 * dots);
   context.textAlign = "right";
   context.textBaseline = "middle";
-  for (const y of marks(bottom, top, 2.5 * area.height)) {
+  for (const y of marks(bottom, top, 1.7 * area.height)) {
     line(area.x - 4 * dots, view.y(y), area.x, view.y(y));
     context.fillText(shown(y), area.x - 6 * dots, view.y(y));
   }
