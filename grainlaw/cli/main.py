@@ -18,6 +18,7 @@ from grainlaw.cli.materials_command import materials
 from grainlaw.cli.movie_command import movie
 from grainlaw.cli.new_law_command import new_law
 from grainlaw.cli.plan_command import plan
+from grainlaw.cli.predict_command import predict
 from grainlaw.cli.report_command import report
 from grainlaw.cli.run_command import run
 from grainlaw.cli.scenes_command import scenes
@@ -42,6 +43,7 @@ app.command("scenes")(scenes)
 app.command("run")(run)
 app.command("plan")(plan)
 app.command("sweep")(sweep)
+app.command("predict")(predict)
 app.command("compare")(compare)
 app.command("movie")(movie)
 app.command("view")(view)

@@ -48,7 +48,7 @@ def drawn(calibrated: Calibrated, samples: int, seed: int) -> Draws:
         refused += 1
         if refused > MOST_REFUSED * samples:
             raise InputError(
-                f"{calibrated.path}: {calibrated.law.name} refuses {refused} of {refused + len(found)} draws: the "
+                f"{calibrated.source}: {calibrated.law.name} refuses {refused} of {refused + len(found)} draws: the "
                 f"estimates of {', '.join(calibrated.table.drawn)} lie at their bounds; fix one of them and calibrate "
                 "again"
             )

@@ -66,7 +66,9 @@ class Findings:
     @cached_property
     def reach(self) -> Array:
         """How far from the solution an interval may reach for its parameter to be determined, shape (parameters,)."""
-        return np.array([_reach(at, u) for at, u in zip(self.fit.coordinates, self.fit.solution.tolist(), strict=True)])
+        return np.array(
+            [reach_of(at, u) for at, u in zip(self.fit.coordinates, self.fit.solution.tolist(), strict=True)]
+        )
 
     @cached_property
     def _combined(self) -> tuple[Array, Array]:
@@ -175,7 +177,8 @@ class Findings:
             yield "the data come without standard errors: their scatter about the law stands in for them"
 
 
-def _reach(at: Coordinate, u: float) -> float:
+def reach_of(at: Coordinate, u: float) -> float:
+    """How far from u the interval of a coordinate may reach for its parameter to count as determined."""
     if at.logarithmic:
         return LOGARITHMIC_REACH
     lowest, highest = at.bounds

@@ -81,9 +81,12 @@ def _is_positive(matrix: Array) -> bool:
 
 @dataclass(frozen=True)
 class Calibrated:
-    """What a calibration left in a file: the law, the values of all its parameters by name, and the table above."""
+    """What a calibration left: the law, the values of all its parameters by name, and the table above.
 
-    path: Path
+    source  the file, for messages
+    """
+
+    source: str
     law: Law
     values: dict[str, float]
     table: CalibrationTable
@@ -104,6 +107,13 @@ def parameter_file(findings: Findings) -> str:
     # Lists, texts and numbers of JSON are those of TOML.
     rows = [f"{name} = {json.dumps(value)}" for name, value in table.items()]
     return "\n".join([*lines, "", f"[{CALIBRATION}]", *rows]) + "\n"
+
+
+def calibrated_of(findings: Findings) -> Calibrated:
+    """What a calibration leaves, without a file. At least one parameter must be determined."""
+    return Calibrated(
+        f"calibration of {findings.fit.law.name}", findings.fit.law, findings.fit.values, _table(findings)
+    )
 
 
 def _table(findings: Findings) -> CalibrationTable:
@@ -146,7 +156,7 @@ def read_calibrated(path: Path) -> Calibrated:
             raise InputError(
                 f"{path}: {name} = {values[name]:g} has no logarithm, as [{CALIBRATION}] says; allowed: > 0"
             )
-    return Calibrated(path, law, values, table)
+    return Calibrated(str(path), law, values, table)
 
 
 def _checked_table(path: Path, content: dict[str, Any]) -> CalibrationTable:
