@@ -110,7 +110,7 @@ def _introduction(prediction: Prediction) -> tuple[str, ...]:
         f"grainlaw {version('grainlaw')}: {prediction.scene.source} with {table.law}, cells of {cell * 1e3:g} mm; "
         f"{len(prediction.draws.values)} draws of {', '.join(table.drawn)} (seed {prediction.seed}) from what "
         f"{', '.join(table.sources)} left open.",
-        *notes(prediction),
+        *(f"Note: {note}." for note in notes(prediction)),
     )
 
 
