@@ -40,8 +40,8 @@ from grainlaw.studies.profiles import Asked, ProfileModel, places_of
 FIRST_STEP = 0.1
 # Change of the answer over a step, in the noise of a difference.
 CLEAR = 5.0
-# Of the sum of squares and of the parameters: noise tells less.
-TOLERANCE = 1e-3
+# Of the sum of squares: with 20 measurements a fifth of a standard deviation; and of the coordinates.
+TOLERANCE, SMALLEST_MOVE = 3e-3, 1e-3
 MOST_RUNS = 12
 
 
@@ -197,10 +197,10 @@ def fit_scene(
 def _solved(model: ProfileModel, chosen: tuple[Coordinate, ...], begin: Mapping[str, float]) -> SceneFit:
     bounds = bounds_of(chosen)
     search = _Search(model, chosen, begin, np.full(len(chosen), FIRST_STEP))
-    point = off_bounds(coordinates_of(chosen, begin), bounds, TOLERANCE)
+    point = off_bounds(coordinates_of(chosen, begin), bounds, SMALLEST_MOVE)
     search.begin(point)
     search.lengthen(point)
-    options: dict[str, Any] = {"x_scale": "jac", "ftol": TOLERANCE, "xtol": TOLERANCE, "max_nfev": MOST_RUNS}
+    options: dict[str, Any] = {"x_scale": "jac", "ftol": TOLERANCE, "xtol": SMALLEST_MOVE, "max_nfev": MOST_RUNS}
     found = least_squares(search.residuals, point, jac=search.jacobian, bounds=bounds, **options)
     return SceneFit(
         law=model.law,
