@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from grainlaw.cli.main import app
 from grainlaw.mpm_core import Scene, run
-from grainlaw.validation.report.own_grains import judged_runs, write_page
+from grainlaw.validation.report.own_grains import TITLE, grains_section, judged_runs, write_page
 from grainlaw.validation.report.page import SECTIONS, read_page
 from grainlaw.validation.report.whole_report import write_whole_report
 
@@ -24,7 +24,7 @@ def folders(tmp_path_factory):
     run(Scene.load(scene, SMALL), root / "column")
     ensemble, judgements = judged_runs([root / "column"], [GRAINS])
     (root / "against").mkdir()
-    write_page(root / "against", ensemble, judgements, COMMAND)
+    write_page(root / "against", TITLE, [grains_section(ensemble, judgements)], COMMAND)
     return root / "column", root / "against"
 
 

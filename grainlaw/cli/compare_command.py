@@ -7,6 +7,7 @@ import typer
 
 if TYPE_CHECKING:
     from grainlaw.mpm_core.output.run_folder import RunFolder
+    from grainlaw.validation.report.page import Section
 
 
 def compare(
@@ -27,10 +28,20 @@ def compare(
             "or a CSV of t, x, h; repeatable.",
         ),
     ] = None,
+    mpm: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--mpm",
+            metavar="FILE",
+            help="A state of another MPM code to put the runs beside: its points in npz, CSV, VTK (.vtk, .vtp, .vtu) "
+            "or PLY, or a CSV of t, x, h; repeatable.",
+        ),
+    ] = None,
 ) -> None:
     """Print a table of the final states, and draw the snapshots at equal normalised runout (the paper's Figure 2).
 
     With --dem: print how far each run is from the grains, and with --out write a page with profiles over time.
+    With --mpm: print how far each run is from the piles of other codes, and with --out write a page with both.
     """
     from rich.console import Console
     from rich.table import Table
@@ -39,8 +50,8 @@ def compare(
     from grainlaw.mpm_core.output.run_folder import RunFolder
     from grainlaw.mpm_core.output.summary import in_digits
 
-    if dem:
-        _judge(folders, dem, out)
+    if dem or mpm:
+        _judge(folders, dem or [], mpm or [], out)
         return
     runs = [(folder.name, RunFolder(folder)) for folder in folders]
     table = Table()
@@ -73,23 +84,42 @@ def compare(
         _draw(runs, out, field)
 
 
-def _judge(folders: list[Path], dem: list[Path], out: Path | None) -> None:
-    from grainlaw.cli.dem_report_command import print_table
-    from grainlaw.validation.report.grain_tables import comparison_table
-    from grainlaw.validation.report.own_grains import judged_runs, write_page
+def _judge(folders: list[Path], dem: list[Path], mpm: list[Path], out: Path | None) -> None:
+    from grainlaw.validation.report.own_codes import TITLE as BESIDE_CODES
+    from grainlaw.validation.report.own_grains import TITLE as AGAINST_GRAINS
+    from grainlaw.validation.report.own_grains import write_page
     from grainlaw.validation.report.write import prepare
 
     if out is not None:
         prepare(out)
+    sections = [*([_against_grains(folders, dem)] if dem else []), *([_beside_codes(folders, mpm)] if mpm else [])]
+    if out is not None:
+        references = [*(f"--dem {path}" for path in dem), *(f"--mpm {path}" for path in mpm)]
+        command = f"grainlaw compare {' '.join(str(path) for path in folders)} {' '.join(references)} --out {out}"
+        title = AGAINST_GRAINS if dem else BESIDE_CODES
+        typer.echo(f"  {write_page(out, title, sections, command)}")
+
+
+def _against_grains(folders: list[Path], dem: list[Path]) -> "Section":
+    from grainlaw.cli.dem_report_command import print_table
+    from grainlaw.validation.report.own_grains import grains_section, judged_runs
+
     ensemble, judgements = judged_runs(folders, dem)
     for run in ensemble.runs:
         if lost := run.description.get("grains_lost"):
             typer.echo(f"warning: {run.label}: {lost} grains left the box; the others are compared", err=True)
-    print_table(comparison_table(ensemble, judgements))
-    if out is not None:
-        references = " ".join(f"--dem {path}" for path in dem)
-        command = f"grainlaw compare {' '.join(str(path) for path in folders)} {references} --out {out}"
-        typer.echo(f"  {write_page(out, ensemble, judgements, command)}")
+    section = grains_section(ensemble, judgements)
+    print_table(section.tables[0])
+    return section
+
+
+def _beside_codes(folders: list[Path], mpm: list[Path]) -> "Section":
+    from grainlaw.cli.dem_report_command import print_table
+    from grainlaw.validation.report.own_codes import codes_section, runs_beside_codes
+
+    section = codes_section(runs_beside_codes(folders, mpm))
+    print_table(section.tables[0])
+    return section
 
 
 def _draw(runs: list[tuple[str, "RunFolder"]], out: Path, field: str) -> None:

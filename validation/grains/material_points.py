@@ -5,6 +5,7 @@ In plane strain a point has one metre of depth, in axisymmetry it is a ring all 
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -30,6 +31,12 @@ def snapshot_of_bodies(time: float, bodies: Sequence[Body], density: float) -> G
     stress = np.concatenate([body.stress[STRESSES[space.axes]] for body in bodies], axis=1)
     moments = StressMoments(positions, -(stress * volumes).T)
     return GrainSnapshot(time, positions, velocity, _solid_volumes(bodies, density), moments)
+
+
+def filled_space(bodies: Sequence[Body]) -> GrainSnapshot:
+    """The points of all bodies at the start, each a grain as large as the space that it fills."""
+    found = snapshot_of_bodies(0.0, bodies, 1.0)
+    return replace(found, solid_volumes=_whole(bodies[0].space) * np.concatenate([body.volume for body in bodies]))
 
 
 def snapshots_of_run(run: RunFolder, scene: Scene, density: float) -> Iterator[GrainSnapshot]:

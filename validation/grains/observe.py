@@ -102,7 +102,7 @@ def setting_of(description: RunDescription, first: GrainSnapshot) -> Setting:
     )
     if not description.is_round:
         return setting
-    x, y = axis_of(first, description)
+    x, y = axis_of(first, description.axis)
     return replace(setting, depth=1.0, center=x, center_y=y, space=AXISYMMETRIC)
 
 

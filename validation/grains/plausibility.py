@@ -59,8 +59,8 @@ def check_geometry(snapshots: Sequence[GrainSnapshot], description: RunDescripti
         _refuse_other_depth(snapshots[0], description.depth)
 
 
-def axis_of(first: GrainSnapshot, description: RunDescription) -> tuple[float, float]:
-    """The axis of a cylinder in x and y [m]: as described, or else that of the first frame's centre of mass.
+def axis_of(first: GrainSnapshot, axis: tuple[float, float] | None) -> tuple[float, float]:
+    """The axis of a cylinder in x and y [m]: as told, or else that of the first frame's centre of mass.
 
     Raises InputError where the grains stand around another one, or around none.
     """
@@ -71,16 +71,16 @@ def axis_of(first: GrainSnapshot, description: RunDescription) -> tuple[float, f
             f"{RUN_DESCRIPTION_NAME}: space = 'axisymmetric', but the grains lie {2.0 * wide:.3g} m around their "
             f"centre along x and {2.0 * long:.3g} m along y: no cylinder, or not all of it"
         )
-    if description.axis is None:
+    if axis is None:
         return float(x), float(y)
-    beside = float(np.hypot(x - description.axis[0], y - description.axis[1]))
+    beside = float(np.hypot(x - axis[0], y - axis[1]))
     diameter = float(sphere_diameters(first.solid_volumes).mean())
     if beside > max(diameter, LARGEST_SHIFT * wide):
         raise InputError(
-            f"{RUN_DESCRIPTION_NAME}: axis = {list(description.axis)}, but the centre of mass of the first frame is "
+            f"{RUN_DESCRIPTION_NAME}: axis = {list(axis)}, but the centre of mass of the first frame is "
             f"{beside:.3g} m beside it, at x = {x:.4g} m, y = {y:.4g} m; without 'axis' it is taken from there"
         )
-    return description.axis
+    return axis
 
 
 def _refuse_fall_along_y(snapshots: Sequence[GrainSnapshot]) -> None:

@@ -15,7 +15,14 @@ from grainlaw.mpm_core.output.run_folder import SCENE_NAME, RunFolder
 from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.space import PLANE_STRAIN, Space
-from grainlaw.validation.grains.material_points import DEPTH, grain_density, grain_diameter, mirrored, snapshots_of_run
+from grainlaw.validation.grains.material_points import (
+    DEPTH,
+    filled_space,
+    grain_density,
+    grain_diameter,
+    mirrored,
+    snapshots_of_run,
+)
 from grainlaw.validation.grains.observation import Observation
 from grainlaw.validation.grains.observe import Setting, observe
 from grainlaw.validation.grains.snapshot import Array, GrainSnapshot
@@ -65,6 +72,34 @@ def as_grains(
     highest = np.max([body.positions.max(axis=1) for body in bodies], axis=0)
     place = _around_axis if setting.space.hoop else _along_slope
     return place(scene, setting, snapshots, lowest, highest)
+
+
+def start_of_run(folder: Path, space: Space = PLANE_STRAIN) -> tuple[float, float]:
+    """The volume that the bodies of a run fill at the start [m3], and the distance of its points [m].
+
+    Per metre of depth in plane strain; halves and quarters count as wholes. `space` as for `observe_run`.
+    """
+    RunFolder(folder)
+    scene = Scene.load(folder / SCENE_NAME)
+    return filled_volume(scene, build_bodies(scene), space), spacing_of_points(scene)
+
+
+def filled_volume(scene: Scene, bodies: Sequence[Body], space: Space = PLANE_STRAIN) -> float:
+    """The volume of `start_of_run`, from the bodies as they are at the start."""
+    setting, snapshots = as_grains(scene, bodies, [filled_space(bodies)], 1.0, 1.0, space)
+    return sum(float(snapshot.solid_volumes.sum()) for snapshot in snapshots) / setting.depth
+
+
+def spacing_of_points(scene: Scene) -> float:
+    """The distance of the points at the start [m], the largest of all bodies."""
+    fewest = min(body.points_per_cell for body in scene.body)
+    return float(scene.grid.cell_size / fewest ** (1.0 / scene.in_space.axes))
+
+
+def mean_density(folder: Path) -> float:
+    """Bulk density of all bodies at the start [kg/m3]."""
+    bodies = build_bodies(Scene.load(folder / SCENE_NAME))
+    return float(sum(body.masses.sum() for body in bodies) / sum(body.volume.sum() for body in bodies))
 
 
 def _is_halved(scene: Scene, axis: int, lowest: Array) -> bool:

@@ -38,12 +38,15 @@ def judged_runs(folders: Sequence[Path], references: Sequence[Path]) -> tuple[En
     return ensemble, judgements
 
 
-def write_page(folder: Path, ensemble: Ensemble, judgements: Sequence[Judgement], command: str) -> Path:
-    """Write a self-contained page with the table and the figures that `command` makes; returns its path."""
+def grains_section(ensemble: Ensemble, judgements: Sequence[Judgement]) -> Section:
+    """The tables and the figures of a page."""
     table = comparison_table(ensemble, judgements)
-    section = Section(
-        table.title, tables=(table, profile_table(judgements)), figures=column_figures(ensemble, judgements)
-    )
-    page = Page(TITLE, (), (section,), command)
+    figures = column_figures(ensemble, judgements)
+    return Section(table.title, tables=(table, profile_table(judgements)), figures=figures)
+
+
+def write_page(folder: Path, title: str, sections: Sequence[Section], command: str) -> Path:
+    """Write a self-contained page with the tables and the figures that `command` makes; returns its path."""
+    page = Page(title, (), tuple(sections), command)
     write_texts(folder, {PAGE: page.html(), SECTIONS: page.json()})
     return folder / PAGE

@@ -28,7 +28,7 @@ def recognises(path: Path, start: bytes) -> bool:
 
 def frames(path: Path) -> Iterator[RawFrame]:
     """The one frame of a file; its time is the field `TIME` if there is one, its step the last number of its name."""
-    data = _read(path)
+    data = read_points(path)
     columns = dict(zip("xyz", np.asarray(data.points, float).T, strict=True))
     for name in data.point_data:
         values = np.asarray(data.point_data[name])
@@ -40,12 +40,17 @@ def frames(path: Path) -> Iterator[RawFrame]:
             if values.shape[1] != 3:
                 raise InputError(f"{path}: '{name}' has {values.shape[1]} components, expected 3")
             columns.update(zip(VECTORS[name], values.T.astype(float), strict=True))
+    number = _LAST_NUMBER.search(path.stem)
+    yield RawFrame(path, settled(columns), time_of(data), int(number[1]) if number else None, complete=True)
+
+
+def time_of(data: Any) -> float | None:
+    """The time that a data set tells in its field data [s], if any."""
     time = None
     for name in ("TIME", "TimeValue"):
-        with contextlib.suppress(KeyError):
+        with contextlib.suppress(KeyError, IndexError, ValueError):
             time = float(np.ravel(data.field_data[name])[0])
-    number = _LAST_NUMBER.search(path.stem)
-    yield RawFrame(path, settled(columns), time, int(number[1]) if number else None, complete=True)
+    return time
 
 
 def _refuse_strange_counts(path: Path) -> None:
@@ -57,7 +62,8 @@ def _refuse_strange_counts(path: Path) -> None:
             raise InputError(f"{path} cannot be read as VTK: {name.decode()} is {text.decode(errors='replace')}")
 
 
-def _read(path: Path) -> Any:
+def read_points(path: Path) -> Any:
+    """The data set of a file, as pyvista has it, with a point at least. Raises InputError in one line."""
     # pyvista prints VTK's own complaints; what counts is whether points came out.
     import pyvista
 
