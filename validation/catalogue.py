@@ -84,6 +84,14 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "obstacles.earth_pressure",
         "obstacles.hopper_discharge",
     ),
+    # The piles of other MPM codes on the paper's column.
+    "mpm": (
+        "mpm.piles.hydrax_mu_i_lc",
+        "mpm.piles.hydrax_cam_clay",
+        "mpm.piles.matter_cam_clay",
+        "mpm.piles.geotaichi_cam_clay",
+        "mpm.piles.newton_drucker_prager",
+    ),
     # What accuracy costs.
     "speed": ("speed.sleeping", "speed.speed_error"),
 }

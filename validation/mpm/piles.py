@@ -18,6 +18,8 @@ from grainlaw.validation.grains.observation import Observation
 from grainlaw.validation.grains.snapshot import Array
 from grainlaw.validation.grains.surface import fronts
 
+# At which shapes are compared.
+PLACES = 2001
 JUDGED = [measure for measure in MEASURES if measure.symbol in ("w", "H")]
 
 
@@ -29,6 +31,16 @@ class Pile:
     h: Array
     half_width: float
     top: float
+
+    @property
+    def area(self) -> float:
+        """Below the surface [m2]."""
+        return float(np.trapezoid(self.h, self.x))
+
+    def of_unit_area(self, x: Array) -> Array:
+        """The height at places `x` of the same shape with an area of 1 below it."""
+        size = np.sqrt(self.area)
+        return np.interp(x * size, self.x, self.h, left=0.0, right=0.0) / size
 
 
 @dataclass(frozen=True)
@@ -46,6 +58,13 @@ class PileDistance:
     def verdict(self) -> Verdict:
         """The least favourable of the three."""
         return worst([found.verdict for found in self.distances if found.verdict is not None])
+
+    @property
+    def shape_distance(self) -> float:
+        """E_A of the two in plane strain, each drawn to the same area: what is left if one has lost, or swollen."""
+        reach = max(pile.x.max() / np.sqrt(pile.area) for pile in (self.ours, self.theirs))
+        x = np.linspace(-reach, reach, PLACES)
+        return float(np.trapezoid(np.abs(self.ours.of_unit_area(x) - self.theirs.of_unit_area(x)), x))
 
     @property
     def decisive(self) -> Distance:

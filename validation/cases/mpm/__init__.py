@@ -1,0 +1,1 @@
+"""The paper's column beside the piles of other MPM codes."""
