@@ -5,9 +5,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
 import tomli_w
 from grains_for_tests import WRITERS, block
 from meshes_to_spoil import SOLID_FILES, mesh_file, read_mesh, read_solid, solid_file
+from points_for_tests import WRITERS as POINT_WRITERS
+from points_for_tests import block as block_of_points
 from runs_to_spoil import RUN_FILES, checkpoint_file, read_run, read_state, resume_vtkhdf, run_file, vtkhdf_file
 from scenes_for_tests import BLOCK, COLUMN, changed
 from scenes_to_spoil import MANY, MOTION, MOVED, ROUND, SOLIDS, TWO, read_motion, scene_file, set_up
@@ -17,9 +20,11 @@ from grainlaw.materials.element.catalogue import get_element_test
 from grainlaw.materials.element.mixed import read_control
 from grainlaw.materials.element.specimen import prepared
 from grainlaw.materials.registry import get_material
+from grainlaw.mpm_core.space import PLANE_STRAIN
 from grainlaw.validation.grains.observation import write_observation
 from grainlaw.validation.grains.observe import observe_folder
 from grainlaw.validation.grains.reference_file import load_reference
+from grainlaw.validation.mpm import state as other_code
 
 
 class Subject(NamedTuple):
@@ -90,6 +95,19 @@ def _dumps(form: str, spoils: str, **more: Any) -> Callable[[Path], Path]:
     return write
 
 
+def _points(form: str) -> Callable[[Path], Path]:
+    def write(folder: Path) -> Path:
+        places = block_of_points(0.3)[::11]
+        return POINT_WRITERS[form](folder, places, np.ones(len(places)))
+
+    return write
+
+
+def read_points_of_others(path: Path) -> object:
+    """Beside the paper's column."""
+    return other_code.read_state(path).observed(other_code.Start(0.27, 0.02), PLANE_STRAIN, 1.0)
+
+
 def _observation(folder: Path) -> Path:
     _dumps("hdf5", "")(folder)
     path = folder / "reference.h5"
@@ -130,6 +148,7 @@ def subjects() -> dict[str, Subject]:
             {"surface": _text("surface.csv", SURFACES), "around": _text("surface.csv", SURFACES_AROUND)}, load_reference
         ),
         "dump": Subject(dumps, lambda path: observe_folder(path.parent)),
+        "points": Subject({form: _points(form) for form in POINT_WRITERS}, read_points_of_others),
         "observation": Subject({"hdf5": _observation}, load_reference),
         "mesh": Subject(meshes, read_mesh),
         "checkpoint": Subject(

@@ -137,7 +137,7 @@ def _case(row: Row) -> Case:
     )
 
 
-_ROWS = (
+ROWS = (
     Row(
         "hydrax_mu_i_lc",
         "the paper's pile of mu(I)-LC comes out of the law as published, integrated as published",
@@ -180,4 +180,4 @@ _ROWS = (
         SetUp("collapse_mu_i_lc", lambda: drucker_prager(0.35)),
     ),
 )
-CASES = {row.name: _case(row) for row in _ROWS}
+CASES = {row.name: _case(row) for row in ROWS}

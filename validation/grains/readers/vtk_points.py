@@ -1,7 +1,9 @@
 """VTK point data of LIGGGHTS (`dump custom/vtk`) and YADE (`VTKRecorder`, spheres): legacy and XML files."""
 
 import contextlib
+import logging
 import re
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -18,6 +20,8 @@ ENDINGS = (".vtk", ".vtp", ".vtu")
 # Of a file, where the counts stand that are checked; and the most points that one may hold.
 START, MOST = 2**16, 2**31 - 1
 _COUNT = re.compile(rb"\b(NumberOf\w+(?==\")|(?:POINTS|CELLS|VERTICES|POINT_DATA)(?= ))[= ]\"?([^\" \n]*)")
+# How pyvista tells that VTK gave up on a file and returned what it had.
+FAILED = ".*raised an error while reading"
 _LAST_NUMBER = re.compile(r"(\d+)\D*$")
 
 
@@ -62,6 +66,17 @@ def _refuse_strange_counts(path: Path) -> None:
             raise InputError(f"{path} cannot be read as VTK: {name.decode()} is {text.decode(errors='replace')}")
 
 
+@contextlib.contextmanager
+def _without_a_log() -> Iterator[None]:
+    """Nothing is logged in the block: pyvista hands on there what VTK says, in many lines."""
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logging.disable(before)
+
+
 def read_points(path: Path) -> Any:
     """The data set of a file, as pyvista has it, with a point at least. Raises InputError in one line."""
     # pyvista prints VTK's own complaints; what counts is whether points came out.
@@ -74,8 +89,11 @@ def read_points(path: Path) -> Any:
     _refuse_strange_counts(path)
     refuse_fatal(path, "VTK")
     try:
-        with pyvista.vtk_verbosity("off"):
+        with pyvista.vtk_verbosity("off"), _without_a_log(), warnings.catch_warnings():
+            warnings.filterwarnings("error", message=FAILED)
             data = pyvista.read(path)
+    except UserWarning:
+        raise InputError(f"{path} cannot be read as VTK; is it truncated?") from None
     except Exception as error:
         raise InputError(f"{path} cannot be read as VTK: {error}") from None
     if getattr(data, "n_points", 0) == 0:
