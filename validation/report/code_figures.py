@@ -11,6 +11,8 @@ from grainlaw.validation.report.plots import data_uri
 
 THEIRS = "#222222"
 MARGIN = 1.12
+# For the names of the runs above the piles.
+HEADROOM = 1.3
 
 
 def pile_figure(found: Sequence[PileDistance]) -> str:
@@ -35,13 +37,14 @@ def drawn_piles(found: Sequence[PileDistance]) -> Figure:
         axes.set_title(f"{code}, t = {time:g} s", fontsize=9)
         axes.tick_params(labelsize=8)
         axes.grid(visible=True, color="#e5e5e5", lw=0.5)
-        axes.legend(frameon=False, fontsize=7, loc="upper right")
-    for axes in panels.flat[len(codes) :]:
-        axes.set_visible(False)
+        axes.legend(frameon=False, fontsize=7, loc="upper left")
+    for number in range(len(codes), rows * columns):
+        panels.flat[number].set_visible(False)
+        panels.flat[number - columns].tick_params(labelbottom=True)
     reach = MARGIN * max(max(one.ours.half_width, one.theirs.half_width) for one in found)
     is_round = found[0].theirs.x.min() >= 0.0
     panels[0, 0].set_xlim(0.0 if is_round else -reach, reach)
-    panels[0, 0].set_ylim(bottom=0.0)
+    panels[0, 0].set_ylim(0.0, HEADROOM * max(max(one.ours.top, one.theirs.top) for one in found))
     for axes in panels[-1]:
         axes.set_xlabel("r [m]" if is_round else "x [m]", fontsize=9)
     for axes in panels[:, 0]:

@@ -169,8 +169,8 @@ ROWS = (
         "geotaichi_cam_clay",
         "another code in rate form makes the same pile of Cam Clay",
         SetUp("collapse_mcc_ocr1"),
-        "another law: viscous mu(I)-LC",
-        SetUp("collapse_mu_i_lc_viscous"),
+        "OCR 4 instead of 1",
+        SetUp("collapse_mcc_ocr4"),
     ),
     Row(
         "newton_drucker_prager",
