@@ -169,8 +169,8 @@ ROWS = (
         "geotaichi_cam_clay",
         "another code in rate form makes the same pile of Cam Clay",
         SetUp("collapse_mcc_ocr1"),
-        "OCR 4 instead of 1",
-        SetUp("collapse_mcc_ocr4"),
+        "floor friction 0.2 instead of 0.7",
+        SetUp("collapse_mcc_ocr1", lambda: {"boundary.bottom.coefficient": 0.2}),
     ),
     Row(
         "newton_drucker_prager",
