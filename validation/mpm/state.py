@@ -23,7 +23,7 @@ from grainlaw.validation.mpm.points import Points, read_points
 
 # Of the spread, along x; a column that falls unevenly to both sides is off by less.
 MOST_ASIDE = 2.0 * LARGEST_SHIFT
-# Of the height, up or down: codes let points sink by cells, but not by more.
+# Of the height, up or down, or a kernel: codes let points sink by cells, but not by more.
 MOST_ABOVE_FLOOR = 0.1
 # By which the points may lie more densely, or less, than the run's column at the start.
 SAME_DENSITY = 2.0
@@ -115,7 +115,7 @@ def _placed(state: State, points: Points, start: Start, space: Space) -> tuple[G
     elif points.positions.shape[1] == 3:
         x, y = axis_of(snapshot, description.axis)
         setting = replace(setting, center=x, center_y=y)
-    _refuse_other_floor(state, snapshot)
+    _refuse_other_floor(state, snapshot, start.width)
     return snapshot, setting
 
 
@@ -146,10 +146,10 @@ def _refuse_aside(state: State, snapshot: GrainSnapshot) -> None:
         )
 
 
-def _refuse_other_floor(state: State, snapshot: GrainSnapshot) -> None:
+def _refuse_other_floor(state: State, snapshot: GrainSnapshot, width: float) -> None:
     floor = state.description.floor_level
     lowest, highest = np.percentile(snapshot.positions[:, 2], [LOWEST_SHARE, 100.0])
-    if abs(lowest - floor) > MOST_ABOVE_FLOOR * (highest - lowest):
+    if abs(lowest - floor) > max(MOST_ABOVE_FLOOR * (highest - lowest), width):
         raise InputError(
             f"{state.path}: the lowest points are at {lowest:.4g} m, the floor at {floor:g} m; {RUN_DESCRIPTION_NAME} "
             f'beside it must tell "floor_level"'
