@@ -9,12 +9,13 @@ from numba import njit
 from rich.console import Console
 
 from grainlaw.mpm_core.stepping.compilation import noticed_compilation
-from grainlaw.progress import COMPILING, progress_bar
+from grainlaw.progress import COMPILING, progress_bar, shown_runs
 
 LONGEST_STATE = "t = 1.234e-05 s, dt = 1.2e-05 s"
+LONGEST_COUNT = "9999 of 9999 runs, 9999 failed"
 
 
-@pytest.mark.parametrize("state", [LONGEST_STATE, COMPILING])
+@pytest.mark.parametrize("state", [LONGEST_STATE, LONGEST_COUNT, COMPILING])
 def test_a_bar_fits_80_columns(state):
     console = Console(file=io.StringIO(), width=80, force_terminal=True, color_system=None)
     bar = progress_bar(console)
@@ -24,6 +25,17 @@ def test_a_bar_fits_80_columns(state):
     (line,) = printed.get().splitlines()
     assert line.rstrip().endswith(state)
     assert len(line) <= 80
+
+
+def test_runs_are_counted_on_a_terminal(monkeypatch):
+    console = Console(file=io.StringIO(), width=80, force_terminal=True, color_system=None)
+    monkeypatch.setattr("grainlaw.progress.Console", lambda stderr: console)
+    with shown_runs(3) as count:
+        for name, reason in (("00", ""), ("01", "it failed"), ("02", "")):
+            count(name, reason)
+    last = console.file.getvalue().splitlines()[-2]
+    assert "100 %" in last
+    assert "3 of 3 runs, 1 failed" in last
 
 
 def test_the_first_compilation_is_noticed_and_all_are_measured():

@@ -41,7 +41,7 @@ def _own_cluster(workers: int) -> LocalCluster:
                 threads_per_worker=1,
                 processes=True,
                 memory_limit="auto",
-                dashboard_address=":0",
+                dashboard_address="127.0.0.1:0",
                 silence_logs=logging.CRITICAL,
             )
     except RuntimeError as error:
