@@ -9,6 +9,7 @@ import trimesh
 from pydantic import ValidationError
 
 from grainlaw.materials import InputError
+from grainlaw.mpm_core.scene import shapes
 from grainlaw.mpm_core.scene.mesh_region import MeshRegion
 from grainlaw.mpm_core.scene.shapes import lattice
 from grainlaw.mpm_core.scene.solids import Box, Cone, Cylinder, Sphere
@@ -224,3 +225,15 @@ def test_a_mesh_file_that_is_no_solid_is_refused_with_the_reason(tmp_path, capfd
 def test_a_shape_without_a_volume_is_refused(make, message):
     with pytest.raises(ValidationError, match=message):
         make()
+
+
+@pytest.mark.parametrize("candidates", [1, 1000])
+def test_a_shape_filled_in_layers_holds_the_same_points(monkeypatch, candidates):
+    halves = ((0.5, -1.0, -1.0), (2.0, 2.0, 0.45))
+    arguments = cylinder(), ORIGIN, CELL, 8, (0.25, 0.0, -0.5)
+    whole = lattice(*arguments)
+    expected = whole[((whole > halves[0]) & (whole < halves[1])).all(axis=1)]
+    assert 0 < len(expected) < len(whole)
+    monkeypatch.setattr(shapes, "CANDIDATES_AT_ONCE", candidates)
+    np.testing.assert_array_equal(lattice(*arguments), whole)
+    np.testing.assert_array_equal(lattice(*arguments, halves), expected)

@@ -4,7 +4,6 @@ import math
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
 import tomli_w
 from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
 
@@ -24,7 +23,7 @@ from grainlaw.mpm_core.scene.section import (
     Vector,
     refuse_beyond,
 )
-from grainlaw.mpm_core.scene.shapes import lattice, points_along_edge, refused_mesh
+from grainlaw.mpm_core.scene.shapes import lattice, refused_mesh
 from grainlaw.mpm_core.scene.space_rules import fitted_to_space
 from grainlaw.mpm_core.space import SPACES, Space
 
@@ -213,14 +212,9 @@ class Scene(Section):
 
     def lattice(self, body: BodySection) -> Points:
         """The places of a body's points at the start, shape (n, axes) [m]."""
-        grid = self.grid
-        points = lattice(body.shape, grid.lower, grid.cell_size, body.points_per_cell)
-        if body.lattice_shift:
-            spacing = grid.cell_size / points_along_edge(body.points_per_cell, len(grid.lower))
-            points = points + spacing * np.array(body.lattice_shift)
-        if not body.clip:
-            return points
-        return points[((points > grid.lower) & (points < grid.upper)).all(axis=1)]
+        grid, shape = self.grid, body.shape
+        domain = (grid.lower, grid.upper) if body.clip else None
+        return lattice(shape, grid.lower, grid.cell_size, body.points_per_cell, body.lattice_shift, domain)
 
     def wall_velocity(self, side: str) -> tuple[float, ...]:
         """The velocity of a side along each axis [m/s]."""

@@ -1,6 +1,8 @@
 """Shapes of bodies in the plane, all shapes by kind, and the regular lattice of points that fills one."""
 
-from typing import Annotated, Literal
+import math
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +12,9 @@ from grainlaw.mpm_core.scene.mesh_region import MeshRegion
 from grainlaw.mpm_core.scene.outline import Points, closed_edges, enclosed, off_edges, outer_edges
 from grainlaw.mpm_core.scene.shape import Shape
 from grainlaw.mpm_core.scene.solids import Box, Cone, Cylinder, Sphere
+
+# While a shape is filled, in the memory of some hundred bytes each.
+CANDIDATES_AT_ONCE = 2**18
 
 Corner = Annotated[tuple[float, float], Field(strict=False)]
 
@@ -110,16 +115,38 @@ def points_along_edge(points_per_cell: int, axes: int) -> int:
     return round(points_per_cell ** (1.0 / axes))
 
 
-def lattice(shape: Shape, origin: tuple[float, ...], cell_size: float, points_per_cell: int) -> Points:
+def lattice(
+    shape: Shape,
+    origin: tuple[float, ...],
+    cell_size: float,
+    points_per_cell: int,
+    shift: Sequence[float] = (),
+    domain: tuple[Sequence[float], Sequence[float]] | None = None,
+) -> Points:
     """Points at the centres of the parts of the grid's cells whose centre lies in the shape, shape (n, axes) [m].
 
-    Cells are divided into equal squares, or cubes. Points are ordered by columns along the last axis, upwards.
+    Cells are divided into equal squares, or cubes. Points are ordered by columns along the last axis, upwards. All are
+    moved by a `shift`, in distances of neighbours; then none lies outside of a `domain`, given by its corners [m].
     """
     spacing = cell_size / points_along_edge(points_per_cell, len(origin))
-    axes = []
-    for start, lower, upper in zip(origin, *shape.bounds(), strict=True):
+    way = spacing * np.array(shift or (0.0,) * len(origin))
+    axes: list[NDArray[Any]] = []
+    for axis, (start, lower, upper) in enumerate(zip(origin, *shape.bounds(), strict=True)):
         first = int(np.floor((lower - start) / spacing + 1e-6))
         last = int(np.ceil((upper - start) / spacing - 1e-6))
-        axes.append(start + (np.arange(first, last) + 0.5) * spacing)
+        places = start + (np.arange(first, last) + 0.5) * spacing
+        if domain is not None:
+            moved = places + way[axis]
+            places = places[(moved > domain[0][axis]) & (moved < domain[1][axis])]
+        axes.append(places)
+    # In layers, so that a large shape needs little more memory than its points.
+    layers = max(1, CANDIDATES_AT_ONCE // max(1, math.prod(len(places) for places in axes[1:])))
+    parts = [_inside(shape, axes[0][at : at + layers], *axes[1:]) for at in range(0, len(axes[0]), layers)]
+    points = np.concatenate([np.empty((0, len(origin))), *parts])
+    return points + way if shift else points
+
+
+def _inside(shape: Shape, *axes: NDArray[Any]) -> Points:
+    """Those points of all combinations of places along axes [m] that lie in a shape."""
     candidates = np.column_stack([places.ravel() for places in np.meshgrid(*axes, indexing="ij")])
     return candidates[shape.contains(candidates)]
