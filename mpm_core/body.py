@@ -25,7 +25,7 @@ from grainlaw.mpm_core.kernels.simd.registers import MOST_AT_ONCE
 from grainlaw.mpm_core.kernels.stress_update import MAX_SIGNAL_SPEED, make_stress_pass
 from grainlaw.mpm_core.kernels.stress_update import REPORTS as STRESS_REPORTS
 from grainlaw.mpm_core.kernels.transfers import Transfers, transfers
-from grainlaw.mpm_core.layout import layout_of
+from grainlaw.mpm_core.layout import allocate, layout_of
 from grainlaw.mpm_core.parallel.blocks import blocks_of
 from grainlaw.mpm_core.parallel.sorting import reorder, sort_by_stencil
 from grainlaw.mpm_core.space import Space
@@ -63,7 +63,8 @@ class Body:
 
     `positions`, `velocity`, `stress`, `density` and the other arrays of one quantity are views of `points`, shape
     (rows, n): writing to them changes the body, unless they are said to be copies. `ids` gives each point's number in
-    the order of generation, of all bodies.
+    the order of generation, of all bodies; those of bodies that grow by and by take turns. `generated` is how many
+    points of this one there have been.
 
     Compiled code takes the `storage` of the points, whose rows are a little longer. In axisymmetry each point has a
     mass of its own, in a row, and `point_mass` is one. The first `awake` points take part in steps; the rest sleeps
@@ -80,6 +81,7 @@ class Body:
         count: int,
         point_mass: float,
         first_id: int,
+        id_stride: int = 1,
     ) -> None:
         self.name = name
         self.space = space
@@ -91,7 +93,10 @@ class Body:
         self.point_mass = point_mass
         self.initial_density = density_of_first(storage, space)
         self.first_id = first_id
-        self.ids = np.arange(first_id, first_id + count, dtype=np.int32)
+        self.id_stride = id_stride
+        self.ids = np.empty(0, np.int32)
+        self.generated = 0
+        self._number(count)
         self.stripe_starts = np.zeros(1, np.int64)
         self.signal_speed_asleep = 0.0
         self.set_awake(count)
@@ -109,6 +114,17 @@ class Body:
         blocks = blocks_of(awake)
         self.transfer_reports = np.zeros((blocks, reports_of(self.space)))
         self.stress_reports = np.zeros((blocks, STRESS_REPORTS))
+
+    @property
+    def numbers(self) -> NDArray[np.int32]:
+        """Of each point its number in the order of generation of this body, shape (n,)."""
+        return (self.ids - np.int32(self.first_id)) // np.int32(self.id_stride)
+
+    def _number(self, count: int) -> None:
+        """Give so many new points, behind the others, their ids."""
+        numbers = np.arange(self.generated, self.generated + count, dtype=np.int32)
+        self.ids = np.concatenate([self.ids, np.int32(self.first_id) + np.int32(self.id_stride) * numbers])
+        self.generated += count
 
     @property
     def points_awake(self) -> NDArray[np.float64]:
@@ -267,6 +283,28 @@ class Body:
         self.set_count(len(kept))
         self.points[:] = values
         self.set_awake(min(len(kept), -(-awake // MOST_AT_ONCE) * MOST_AT_ONCE))
+
+    def add(self, points: NDArray[Any]) -> None:
+        """Take in new points, rows as in `points`, which are awake."""
+        first, new = self.count, points.shape[1]
+        self.reserve(first + new)
+        self.set_count(first + new)
+        self.points[:, first:] = points
+        self._number(new)
+        asleep = np.zeros(self.count, np.bool_)
+        asleep[self.awake : first] = True
+        if asleep.any():
+            self.divide(asleep)
+        else:
+            self.set_awake(self.count)
+
+    def reserve(self, count: int) -> None:
+        """Have room for so many points; for more, where there was none."""
+        if count > self.storage.shape[1]:
+            larger = allocate(len(self.storage), max(count, 2 * self.count), self.precision)
+            larger[:, : self.count] = self.points
+            self.storage = larger
+            self.set_count(self.count)
 
     def set_count(self, count: int) -> None:
         """Keep only the first points."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from grainlaw.mpm_core.open_sides import Departed
+from grainlaw.mpm_core.carried import Carried
 
 
 @dataclass
@@ -18,8 +18,9 @@ class Ledger:
     energy is NaN where a law does not state its energy.
 
     `outflow` is the energy of motion and of height, over the lower corner of the domain, that points took with them
-    through open sides, `outflow_elastic` the elastic energy that they took, `mass_left` [kg and the amount] their mass.
-    Potential energy is that of the points still there, less that of all at the start.
+    through open sides, `outflow_height` that of height alone, `outflow_elastic` the elastic energy that they took,
+    `mass_left` [kg and the amount] their mass; `inflow`, `inflow_height`, `inflow_elastic` and `mass_in` are the same
+    of what entered through mouths. Potential energy is that of the points still there, less that of all at the start.
     """
 
     kinetic: float
@@ -32,8 +33,13 @@ class Ledger:
     obstacle_work: float = 0.0
     obstacle_friction: float = 0.0
     outflow: float = 0.0
+    outflow_height: float = 0.0
     outflow_elastic: float = 0.0
     mass_left: float = 0.0
+    inflow: float = 0.0
+    inflow_height: float = 0.0
+    inflow_elastic: float = 0.0
+    mass_in: float = 0.0
     volume_projection: float = 0.0
     rise_to_come: float = 0.0
     work_to_come: float = 0.0
@@ -50,23 +56,39 @@ class Ledger:
         self.potential += raised
         self.volume_projection += raised
 
-    def count_outflow(self, left: Departed) -> None:
+    def count_outflow(self, left: Carried) -> None:
         """Take in what points took with them that left after the last step."""
-        # Where they were in the middle of the step, where the other energies are counted.
-        potential = left.potential - 0.5 * left.risen
-        self.kinetic -= left.kinetic
-        self.potential -= potential
-        self.rise_to_come -= 0.5 * left.risen
-        self.outflow += left.kinetic + potential
+        self._count_points(left, -1.0)
+        self.outflow += left.kinetic + left.potential_in_the_middle
+        self.outflow_height += left.potential_in_the_middle
         self.outflow_elastic += left.elastic
         self.mass_left += left.mass
+
+    def count_inflow(self, came: Carried) -> None:
+        """Take in what points brought that entered after the last step, as if they had flown in it as they do now."""
+        self._count_points(came, 1.0)
+        self.inflow += came.kinetic + came.potential_in_the_middle
+        self.inflow_height += came.potential_in_the_middle
+        self.inflow_elastic += came.elastic
+        self.mass_in += came.mass
+
+    def _count_points(self, points: Carried, more: float) -> None:
+        self.kinetic += more * points.kinetic
+        self.potential += more * points.potential_in_the_middle
+        self.rise_to_come += more * 0.5 * points.risen
 
     @property
     def numerical_dissipation(self) -> float:
         """What is left of the balance: energy that transfers and time integration took (or gave, if negative)."""
-        given = self.initial_kinetic + self.volume_projection
+        given = self.initial_kinetic + self.volume_projection + self.inflow
         taken = self.internal_work + self.wall_work + self.obstacle_work + self.outflow
         return given - self.kinetic - self.potential - taken
+
+    @property
+    def released(self) -> float:
+        """What was there to be spent: energy of motion, and of height that was lost, but not carried away."""
+        fallen = self.inflow_height - self.outflow_height - self.potential
+        return self.initial_kinetic + self.inflow - self.inflow_height + max(0.0, fallen)
 
     @property
     def kinetic_at_end(self) -> float:
@@ -75,4 +97,8 @@ class Ledger:
 
     def inelastic_work(self, elastic: float) -> float:
         """What of the internal work is not in the elastic energy at the end of the step: plastic and viscous work."""
-        return self.internal_work + self.work_to_come - (elastic + self.outflow_elastic - self.initial_elastic)
+        return (
+            self.internal_work
+            + self.work_to_come
+            - (elastic + self.outflow_elastic - self.initial_elastic - self.inflow_elastic)
+        )

@@ -14,6 +14,7 @@ from grainlaw.mpm_core.grid.active_nodes import ActiveNodes, find_active_nodes, 
 from grainlaw.mpm_core.grid.grid import Grid
 from grainlaw.mpm_core.grid.periodic import join_periodic
 from grainlaw.mpm_core.grid.volume_projection import LONGEST_UNPROJECTED, project_volumes
+from grainlaw.mpm_core.inflow import Inflows
 from grainlaw.mpm_core.kernels.body_force import BodyForce, scatter_body_force
 from grainlaw.mpm_core.kernels.elastic_energy import elastic_energy
 from grainlaw.mpm_core.kernels.grid_update import clear_bulk, clear_nodes, update_nodes
@@ -30,6 +31,7 @@ from grainlaw.mpm_core.open_sides import let_leave
 from grainlaw.mpm_core.output.fields import chosen_fields
 from grainlaw.mpm_core.parallel.sorting import LONGEST_DRIFT
 from grainlaw.mpm_core.parallel.threads import use_threads
+from grainlaw.mpm_core.scene.build_inflows import build_inflows, check_mouths
 from grainlaw.mpm_core.scene.build_obstacles import build_obstacles, check_start
 from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.model import Scene
@@ -66,17 +68,21 @@ class Simulation:
         self.grid = Grid(self.space, *size, self.periodic_axes, scene.precision, _open_sides(scene))
         self.fields = chosen_fields(scene)
         self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
+        self.initial_points = sum(body.count for body in self.bodies)
+        refuse_coarse_stress(self.bodies, self._signals_of_points(), scene.gravity)
+        self.inflows = Inflows(build_inflows(scene, self.initial_points, "shear_strain" in self.fields))
+        bodies_at_start = list(self.bodies)
+        self.bodies += [inflow.body for inflow in self.inflows.all]
         signals = self._signals_of_points()
-        refuse_coarse_stress(self.bodies, signals, scene.gravity)
         started = time.perf_counter()
         for body in self.bodies:
             body.choose_kernels(self.basis)
         initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
-        self.initial_points = sum(body.count for body in self.bodies)
         self.walls = _walls(scene)
         self.obstacles = Obstacles(build_obstacles(scene), FreeRoom(self.grid, self.periodic_axes))
-        check_start(scene, self.obstacles.all, self.bodies)
+        check_start(scene, self.obstacles.all, bodies_at_start)
+        check_mouths(self.inflows.all, self.obstacles.all)
         self.body_force: BodyForce | None = None
         self.held_nodes = np.empty(0, np.int64)
         self.time = 0.0
@@ -139,6 +145,7 @@ class Simulation:
         self._take_reports(dt)
         if self.sleep is not None:
             self._let_sleep(self.sleep)
+        self._let_in()
 
     def _p2g(self, couples_volumes: bool = False) -> None:
         for body in self.bodies:
@@ -241,7 +248,7 @@ class Simulation:
         found = zip(self.signal_bounds, reported, diffusivities, strict=True)
         speeds = (bounds.speed(*pair, nu / self.grid.cell_size) for bounds, pair, nu in found)
         # A point in contact may be as fast as the obstacle in the next step.
-        return max(self.free_fall_speed, *speeds) + self.obstacles.largest_speed
+        return max(self.free_fall_speed, self.inflows.signal_speed(self.time), *speeds) + self.obstacles.largest_speed
 
     def elastic_energy(self) -> float:
         """The present elastic energy of all bodies [J and the space's amount]; NaN if a law does not state it."""
@@ -289,6 +296,15 @@ class Simulation:
             body.sort(self.grid, self.basis)
         self.drift = 0.0
         self.find_active_nodes()
+
+    def _let_in(self) -> None:
+        """Let in what has come through mouths until now."""
+        came = self.inflows.let_in(self.time, self.bodies, self.grid, self.basis, self.scene.gravity, self.last_step)
+        if came is not None:
+            self.ledger.count_inflow(came)
+            self._sort()
+            if self.sleep is not None:
+                self.sleep.take_in_new_points()
 
     def _let_leave(self) -> bool:
         """Remove what has gone through open sides; returns whether anything has. What is left has to be sorted."""

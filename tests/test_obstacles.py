@@ -173,6 +173,23 @@ def test_a_piston_does_the_work_that_the_sand_takes_up():
     assert given == pytest.approx(ledger.potential + ledger.kinetic + ledger.internal_work, rel=0.1)
 
 
+@pytest.mark.parametrize(
+    "moves",
+    [
+        {"velocity": [0.0, -40.0]},
+        {"angular_velocity": 100.0, "center": [0.25, 0.0]},
+        {"motion": {"time": [0.0, 1.0], "displacement": [[0.0, 0.0], [0.0, -40.0]]}},
+    ],
+)
+def test_the_velocity_of_an_obstacle_bounds_the_first_step(moves):
+    plate = {"kind": "rectangle", "lower": [0.2, 0.4], "upper": [0.3, 0.45]}
+    content = {**BOX, "obstacle": [{"name": "plate", "friction": 0.0, "shape": plate, **moves}]}
+    still = {**content, "obstacle": [{"name": "plate", "friction": 0.0, "shape": plate}]}
+    fast, slow = (simulation(one).critical_time_step() for one in (content, still))
+    cell = simulation(still).grid.cell_size
+    assert cell / fast - cell / slow >= 40.0
+
+
 def test_a_gate_that_is_taken_away_lets_the_sand_fall():
     case = simulation(BOX, {"obstacle.0.until": 0.1})
     case.advance_to(0.1)

@@ -8,6 +8,7 @@ from scenes_for_tests import MU_I_LC, changed, simulation
 
 from grainlaw.materials import InputError
 from grainlaw.mpm_core import Scene, run
+from grainlaw.mpm_core.grid.grid import COMPONENTS, NODE_OF
 from grainlaw.mpm_core.output.frame_series import read_collection
 from grainlaw.mpm_core.output.history import read_history
 from grainlaw.mpm_core.output.run_folder import RunFolder
@@ -147,6 +148,44 @@ def test_a_run_that_loses_everything_ends_well_and_resumes_to_the_same_bits(tmp_
         assert shown.GetNumberOfPoints() == shown.GetNumberOfVerts() == count
         if count:
             assert shown.GetPoint(count - 1) == pytest.approx(written.positions[-1])
+
+
+def test_height_that_is_carried_out_sideways_was_not_released():
+    """A layer flies out through a side at the height that it has, but for the little that it falls until then."""
+    flying = {"boundary": {"left": "open", "right": "open"}, "body.0.velocity": [10.0, 0.0]}
+    case = simulation(FALLING, flying)
+    case.advance_to(0.075)
+    ledger = case.ledger
+    assert ledger.mass_left == pytest.approx(MASS)
+    assert ledger.released - ledger.initial_kinetic < MASS * G * 0.5 * G * 0.075**2
+    assert -ledger.potential > 10.0 * (ledger.released - ledger.initial_kinetic)
+
+
+def test_what_leaves_wakes_nobody_and_loses_no_sleeper():
+    """A heap sleeps at the left side while a block slides out through the right one."""
+    heap = {"kind": "polygon", "vertices": [[0.0, 0.0], [0.1, 0.0], [0.0, 0.04]]}
+    bodies = [SLIDING["body"][0], {**SLIDING["body"][0], "velocity": [0.0, 0.0], "shape": heap}]
+    case = simulation(
+        SLIDING,
+        {
+            "body": bodies,
+            "body.0.shape.lower": [0.3, 0.0],
+            "body.0.velocity": [2.0, 0.0],
+            "sleep": {"speed": 0.05, "window": 0.01},
+        },
+    )
+    block, rests = case.bodies
+    before = 0
+    while case.time < 0.3:
+        case.step(case.next_step(0.3)[0])
+        if rests.awake < rests.count and before == 0:
+            before = block.count
+    assert before > 0
+    assert block.count < before
+    nodes = case.sleep.nodes.reshape(-1, COMPONENTS)[:, NODE_OF[2].mass]
+    assert nodes.sum() == pytest.approx((rests.count - rests.awake) * rests.point_mass, rel=1e-12)
+    assert rests.awake < rests.count
+    assert sorted(rests.numbers) == list(range(rests.generated))
 
 
 def test_an_open_side_is_no_axis_and_no_half_of_a_periodic_pair():

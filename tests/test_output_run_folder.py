@@ -22,6 +22,8 @@ SUMMARY = {
     "simulated_time": 1.5,
     "mass_left": 0.0,
     "points_left": 0,
+    "mass_in": 0.0,
+    "points_in": 0,
     "wall_time": 12.5,
     "compile_time": 3.0,
     "point_steps_per_second": 2.0e7,

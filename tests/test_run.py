@@ -27,9 +27,9 @@ from grainlaw.mpm_core.output.run_folder import RunFolder
 __all__ = ["fresh_registry"]
 
 SUMMARY_KEYS = [
-    "scene", "material", "points", "cells", "steps", "simulated_time", "mass_left", "points_left",
-    "wall_time", "compile_time", "point_steps_per_second", "peak_memory_bytes", "final", "energy_balance_error",
-    "limited", "threads", "version",
+    "scene", "material", "points", "cells", "steps", "simulated_time", "mass_left", "points_left", "mass_in",
+    "points_in", "wall_time", "compile_time", "point_steps_per_second", "peak_memory_bytes", "final",
+    "energy_balance_error", "limited", "threads", "version",
 ]  # fmt: skip
 FINAL_KEYS = ["runout", "height", "center_of_mass_height", "kinetic_energy"]
 

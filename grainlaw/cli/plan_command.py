@@ -33,14 +33,14 @@ def plan(
     table = Table(title=scene.title or scene_file.stem, show_header=False)
     rows = {
         "laws": ", ".join(planned.laws),
-        "points": f"{planned.points:,}",
+        "points": _points(planned.points, planned.points_at_end),
         "cells of the domain": f"{planned.cells:,}",
         "active nodes": f"{planned.active_nodes:,}",
         "memory": f"{_megabytes(planned.memory_bytes)}; {planned.bytes_per_point:.0f} bytes per point in arrays",
         "basis, transfer": f"{scene.transfer.basis}, {scene.transfer.scheme}, time constant {scene.blend_time:g} s",
         "time step": f"{planned.step:.3g} s at the start (stable: {planned.critical_time_step:.3g} s)",
         "steps": f"about {planned.steps:,}",
-        "rate": f"{planned.points / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "
+        "rate": f"{planned.points_at_end / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "
         f"{counted(planned.threads, 'thread')}",
         "expected duration": f"{planned.wall_time:.1f} s, of which output {planned.output_time:.1f} s",
         "kernels": _kernels(planned.compile_time),
@@ -54,6 +54,10 @@ def plan(
     for name, value in rows.items():
         table.add_row(name, value)
     Console(width=110, markup=False).print(table)
+
+
+def _points(at_start: int, at_end: int) -> str:
+    return f"{at_start:,}" if at_end == at_start else f"{at_start:,} at the start, up to {at_end:,} at the end"
 
 
 def _kernels(compile_time: float) -> str:

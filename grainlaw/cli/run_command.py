@@ -66,11 +66,14 @@ def _print_result(folder: Path, summary: "RunSummary", amount: str) -> None:
         f"runout {final.runout:.4f} m, height {final.height:.4f} m, centre of mass "
         f"{in_digits(final.center_of_mass_height)} m, kinetic energy {final.kinetic_energy:.3g} J{amount}"
     )
+    points = summary.points + summary.points_in
+    if summary.points_in > 0:
+        typer.echo(f"{summary.mass_in:.4g} kg{amount} entered, {counted(summary.points_in, 'point')}")
     if summary.points_left > 0:
-        all_of_it = ": nothing is left" if summary.points_left == summary.points else ""
+        all_of_it = ": nothing is left" if summary.points_left == points else ""
         typer.echo(
             f"{summary.mass_left:.4g} kg{amount} left through open sides, {summary.points_left} of "
-            f"{counted(summary.points, 'point')}{all_of_it}"
+            f"{counted(points, 'point')}{all_of_it}"
         )
     counts = ", ".join(
         f"{count} {name.removeprefix('points_').replace('_', ' ')}" for name, count in summary.limited.items()

@@ -85,7 +85,7 @@ def scenes() -> ShippedScenes:
 
 def described(name: str, scene: model.Scene) -> list[str]:
     """A row about a scene: what it is made of, and what its cost grows with, the material points and the duration."""
-    laws = dict.fromkeys(scene.law(body.material).name for body in scene.body)
+    laws = dict.fromkeys(scene.law(material).name for material in scene.materials)
     size = (high - low for low, high in zip(scene.grid.lower, scene.grid.upper, strict=True))
     return [
         name,

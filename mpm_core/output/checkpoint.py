@@ -59,6 +59,11 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
             group.create_dataset("stripe_starts", data=body.stripe_starts)
             group.attrs.update(law=body.law.name, law_mark=mark_of_law(body.law), rows=", ".join(body.row_names))
             group.attrs.update(awake=body.awake, signal_speed_asleep=body.signal_speed_asleep)
+        for inflow in simulation.inflows.all:
+            group = file.create_group(f"inflow/{inflow.name}")
+            group.create_dataset("entered", data=inflow.entered)
+            group.create_dataset("waited", data=inflow.waited)
+            group.attrs.update(was_blocked=inflow.was_blocked, generated=inflow.body.generated)
         for name, state in simulation.obstacles.states.items():
             file.create_dataset(f"obstacle/{name}", data=state)
         if simulation.sleep is not None:
@@ -115,18 +120,25 @@ def _restore(file: h5py.File, simulation: Simulation) -> Clock:
     for number, body in enumerate(simulation.bodies):
         group = file[f"body/{number}"]
         rows, points = group["points"].shape
-        if rows != len(body.points) or not points <= body.count:
+        grows = any(inflow.body is body for inflow in simulation.inflows.all)
+        if rows != len(body.points) or not (grows or points <= body.count):
             raise ValueError(f"body {number} has {(rows, points)} values, not {body.points.shape}")
+        body.reserve(points)
         body.set_count(points)
         body.points[:] = numbers_of(group["points"])
         body.ids = numbers_of(group["ids"])
         body.stripe_starts = numbers_of(group["stripe_starts"])
         body.set_awake(int(group.attrs["awake"]))
         body.signal_speed_asleep = float(group.attrs["signal_speed_asleep"])
+    for inflow in simulation.inflows.all:
+        group = file[f"inflow/{inflow.name}"]
+        inflow.entered, inflow.waited = numbers_of(group["entered"]), numbers_of(group["waited"])
+        inflow.was_blocked, inflow.body.generated = bool(group.attrs["was_blocked"]), int(group.attrs["generated"])
     if simulation.sleep is not None:
         simulation.sleep.started = float(file["sleep"].attrs["started"])
-        for number, positions in enumerate(simulation.sleep.positions):
-            positions[:] = numbers_of(file[f"sleep/positions/{number}"])
+        simulation.sleep.positions = [
+            numbers_of(file[f"sleep/positions/{number}"]) for number in range(len(simulation.bodies))
+        ]
         simulation.sleep.withheld = numbers_of(file["sleep/withheld"])
         simulation.sleep.bring_sleepers()
     simulation.time = float(file.attrs["time"])

@@ -76,7 +76,7 @@ def cuts_of(run: RunFolder) -> tuple[Cut, ...]:
         return (Cut(is_mirrored=True),)
     if run.space.axes == 2:
         return (PLANE,)
-    positions = run.load_frame(0).positions
+    positions = run.load_frame(run.first_with_points).positions
     with _told_by_scene(run):
         middle = middle_of_points(positions, run.scene)
     both = Cut(0, 2, 1, middle.place[1]), Cut(1, 2, 0, middle.place[0])

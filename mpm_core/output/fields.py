@@ -102,7 +102,7 @@ def chosen_fields(scene: Scene) -> list[str]:
 
     Raises InputError for a name that neither the core nor any law knows.
     """
-    laws = [scene.law(section.material) for section in scene.body]
+    laws = [scene.law(material) for material in scene.materials]
     output = scene.output
     names = _defaults(laws) if output.fields is None else list(output.fields)
     for name in names:
@@ -110,7 +110,7 @@ def chosen_fields(scene: Scene) -> list[str]:
     if output.picture_field is not None:
         _refuse_unknown("output.picture_field", output.picture_field, laws)
         names.append(output.picture_field)
-    if len({section.material for section in scene.body}) > 1:
+    if len(set(scene.materials)) > 1:
         names.append(BODY_FIELD)
     return list(dict.fromkeys(names))
 

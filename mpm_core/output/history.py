@@ -84,6 +84,10 @@ _COLUMNS = (
         "J",
         "energy of motion and height{per} that it took along, height over the lower corner of the domain",
     ),
+    HistoryColumn("mass_in", "kg", "mass{per} that entered through inflows since the start"),
+    HistoryColumn(
+        "inflow", "J", "energy of motion and height that it brought, height over the lower corner of the domain"
+    ),
     HistoryColumn("numerical_dissipation", "J", "energy that transfers and time integration took{per} since the start"),
     HistoryColumn(
         "volume_projection", "J", "part of `potential_energy` that points gained by being moved apart, since the start"

@@ -41,7 +41,7 @@ class Materials:
 
 def materials_of(run: RunFolder) -> Materials:
     """The materials of a run by its scene: their names, with the laws where these are called otherwise."""
-    of_bodies = [body["material"] for body in run.scene.get("body", [])]
+    of_bodies = [section["material"] for kind in ("body", "inflow") for section in run.scene.get(kind, [])]
     used = list(dict.fromkeys(of_bodies))
     laws = [run.scene["material"][name].get("law", name) for name in used]
     names = tuple(name if name == law else f"{name} ({law})" for name, law in zip(used, laws, strict=True))

@@ -31,10 +31,10 @@ class Middle:
 
 
 def middle_of(scene: Scene) -> Middle | None:
-    """The middle of a scene's bodies by their shapes; None but in 3D."""
+    """The middle of a scene's bodies, and inflows, by their shapes; None but in 3D."""
     if scene.in_space is not THREE_D:
         return None
-    corners = np.array([body.shape.bounds() for body in scene.body])
+    corners = np.array([section.shape.bounds() for section in scene.with_points])
     return _middle(corners[:, 0].min(axis=0), corners[:, 1].max(axis=0), scene.model_dump(mode="json"))
 
 

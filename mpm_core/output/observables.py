@@ -72,7 +72,7 @@ def interior_overfill(simulation: Simulation) -> InteriorOverfill:
 
 def measure_of(scene: Scene) -> Measure:
     """With what the shapes of a scene's bodies are measured."""
-    points_per_cell = float(np.mean([body.points_per_cell for body in scene.body]))
+    points_per_cell = float(np.mean([section.points_per_cell for section in scene.with_points]))
     return Measure(scene.grid.lower[scene.in_space.up], scene.grid.cell_size, points_per_cell, middle_of(scene))
 
 

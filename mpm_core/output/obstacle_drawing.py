@@ -21,14 +21,16 @@ ROUND_OFF = 1e-9
 
 
 def boxes_within(obstacles: Sequence[ObstacleFrame], domain: Floats | None, cut: Cut) -> list[Box]:
-    """The boxes of those obstacles that lie within the domain and do not reach its sides."""
+    """The boxes of what lies within the domain of those obstacles that do not go from one of its sides to the other."""
     found, shown = [], [cut.across, cut.up]
     for obstacle in obstacles:
         places = obstacle.outline.points[:, shown]
         if len(places) == 0 or obstacle.hollow or domain is None:
             continue
         lowest, highest = places.min(axis=0), places.max(axis=0)
-        if (lowest > domain[0, shown]).all() and (highest < domain[1, shown]).all():
+        goes_through = (lowest <= domain[0, shown]) & (highest >= domain[1, shown])
+        lowest, highest = np.maximum(lowest, domain[0, shown]), np.minimum(highest, domain[1, shown])
+        if not goes_through.any() and (lowest < highest).all():
             left = -float(highest[0]) if cut.is_mirrored else float(lowest[0])
             found.append((left, float(highest[0]), float(lowest[1]), float(highest[1])))
     return found

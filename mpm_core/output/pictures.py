@@ -44,9 +44,10 @@ _ENERGIES = (
     "wall_work",
     "obstacle_work",
     "outflow",
+    "inflow",
     "numerical_dissipation",
 )
-_OF_SOME = ("obstacle_work", "outflow")
+_OF_SOME = ("obstacle_work", "outflow", "inflow")
 _SPREADING = 1.1
 
 
@@ -111,16 +112,20 @@ def draw_history(runs: Sequence[tuple[str, RunFolder]], path: Path) -> None:
 def write_run_pictures(folder: Path) -> list[Path]:
     """Write final.png, history.png and, if the runout grew by more than a tenth, snapshots.png; return their paths.
 
-    With obstacles also forces.png. final.png is of the last frame that holds material. They show what
+    With obstacles also forces.png. final.png is of the last frame that holds material; there is none where nothing has
+    entered. They show what
     `output.picture_field` of the scene says; by default the shear strain, or without it the first field that the frames
     hold. Raises InputError if the folder lacks frames or history, or if its frames hold no such field.
     """
     run = RunFolder(folder)
     last = _last_with_points(run)
+    if len(last.positions) == 0:
+        draw_history([(folder.name, run)], folder / "history.png")
+        return [folder / "history.png"]
     field = shown_field(run, last)
     limits = usual_limits(field)
     written = [folder / "final.png", folder / "history.png"]
-    spacing, cuts = point_spacing(run.load_frame(0).positions), cuts_of(run)
+    spacing, cuts = point_spacing(run.load_frame(run.first_with_points).positions), cuts_of(run)
     obstacles = obstacles_at(folder, last.time)
     if run.space.axes == 3:
         draw_solid_frame(last, field, written[0], cuts, domain_of(run), limits, spacing, materials_of(run), obstacles)
@@ -161,7 +166,7 @@ def _draw_shape(runout: Axes, heights: Axes, label: str, run: RunFolder) -> None
 
 
 def _is_idle(run: RunFolder, name: str) -> bool:
-    """Whether an energy belongs to obstacles or open sides that the run does not have."""
+    """Whether an energy belongs to obstacles, open sides or inflows that the run does not have."""
     return name in _OF_SOME and (name not in (run.history.dtype.names or ()) or not run.history[name].any())
 
 

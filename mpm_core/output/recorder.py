@@ -109,6 +109,8 @@ class Recorder:
                 "obstacle_friction": ledger.obstacle_friction,
                 "mass_left": ledger.mass_left,
                 "outflow": ledger.outflow,
+                "mass_in": ledger.mass_in,
+                "inflow": ledger.inflow,
                 "numerical_dissipation": ledger.numerical_dissipation,
                 "volume_projection": ledger.volume_projection,
                 "overfill": overfill.mean,

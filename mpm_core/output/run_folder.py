@@ -66,6 +66,12 @@ class RunFolder:
         return np.array([file.time for file in self.frame_files])
 
     @cached_property
+    def first_with_points(self) -> int:
+        """The number of the first frame that holds points, before which nothing had entered; 0 where none does."""
+        filled = (index for index in range(len(self.frame_files)) if len(self.load_frame(index).positions) > 0)
+        return next(filled, 0)
+
+    @cached_property
     def history(self) -> NDArray[Any]:
         """The history as a structured array of shape (rows,); at least one row."""
         history = read_history(self.path)

@@ -65,7 +65,7 @@ class ShownRun:
     @cached_property
     def spacing(self) -> float:
         """That of the points when they were generated [m]."""
-        return point_spacing(self.run.load_frame(0).positions)
+        return point_spacing(self.run.load_frame(self.run.first_with_points).positions)
 
     @cached_property
     def cuts(self) -> tuple[Cut, ...]:

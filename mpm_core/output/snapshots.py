@@ -88,6 +88,7 @@ def _snapshots(shown: ShownRun) -> list[tuple[Section, float]]:
     """The frames of one run that come nearest to the three normalised runouts, and those that they have."""
     run = shown.run
     reached = normalized_runout(run, run.frame_times)
+    reached[: run.first_with_points] = np.inf
     chosen = [int(np.argmin(np.abs(reached - target))) for target in NORMALIZED_RUNOUTS]
     return [(shown.section(run.load_frame(index)), float(reached[index])) for index in chosen]
 

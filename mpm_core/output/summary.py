@@ -46,6 +46,8 @@ class RunSummary(BaseModel):
     simulated_time: FiniteFloat
     mass_left: FiniteFloat = 0.0
     points_left: NonNegativeInt = 0
+    mass_in: FiniteFloat = 0.0
+    points_in: NonNegativeInt = 0
     wall_time: FiniteFloat
     compile_time: FiniteFloat
     point_steps_per_second: FiniteFloat

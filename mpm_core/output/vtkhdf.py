@@ -2,14 +2,13 @@
 
 Layout: https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format/vtkhdf_specifications.html. Positions and
 fields of the steps lie one after the other; `Steps/PointOffsets` and `Steps/PointDataOffsets/NAME` say where each
-begins. The vertices are stored once: those of a step are the first ones, as many as it has points, never more than the
-first step.
+begins. The vertices are stored once: those of a step are the first ones, as many as it has points.
 
-A frame is appended in place, since writing a copy for each would cost the square of the number of frames. One chunk
-per step and array, as long as the first, means that the data of earlier steps is never touched, and the new index is
-put into the file last: a run that is killed while it appends, or finds the disk full, leaves them readable. Only the
-moment in which the index is written is not protected; a resumed run therefore writes the file anew, from the VTU frames
-or else from itself, which also drops the steps after the checkpoint.
+A frame is appended in place, since writing a copy for each would cost the square of the number of frames. Each step has
+chunks of its own in each array, one where it has no more points than the first, so that the data of earlier steps is
+never touched, and the new index is put into the file last: a run that is killed while it appends, or finds the disk
+full, leaves them readable. Only the moment in which the index is written is not protected; a resumed run therefore
+writes the file anew, from the VTU frames or else from itself, which also drops the steps after the checkpoint.
 """
 
 from collections.abc import Iterator
@@ -28,10 +27,12 @@ from grainlaw.mpm_core.output.hdf5_reading import existing_hdf5, numbers_of
 VTKHDF_NAME = "run.vtkhdf"
 _CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
 _STEPS_PER_CHUNK = 1024
+# Of a run that begins with fewer points, or none.
+_FEWEST_POINTS_OF_A_CHUNK = 1024
 
 
 def append_frame(path: Path, frame: Frame) -> None:
-    """Append a frame to the file, which is created with its first frame; none has more points than that.
+    """Append a frame to the file, which is created with its first frame.
 
     Raises OSError where the disk is full; the file is then as it was.
     """
@@ -66,9 +67,9 @@ def _frames(root: h5py.Group, last: float) -> Iterator[Frame]:
     points = numbers_of(root["NumberOfPoints"])[: len(times)].tolist()
     if len(points) != len(times) or not len(times) or not times[0] <= last or not np.all(np.diff(times) > 0):
         raise ValueError(f"{times} s are no times of frames from the start to {last:g} s")
+    starts = numbers_of(steps["PointOffsets"])[: len(times)].tolist()
     for number in range(np.count_nonzero(times <= last)):
-        first = number * points[0]
-        rows = slice(first, first + points[number])
+        rows = slice(starts[number], starts[number] + points[number])
         fields = tuple(
             Field(name, stored.attrs["unit"], stored.attrs["doc"], _rows(stored, rows))
             for name, stored in root["PointData"].items()
@@ -108,8 +109,9 @@ def _create_layout(root: h5py.Group, frame: Frame) -> None:
 
 def _create_cells(group: h5py.Group, count: int) -> None:
     """`count` cells of one point each."""
-    group.create_dataset("Connectivity", data=np.arange(count, dtype=np.int64))
-    group.create_dataset("Offsets", data=np.arange(count + 1, dtype=np.int64))
+    for name, entries in (("Connectivity", count), ("Offsets", count + 1)):
+        chunks = (max(entries, _FEWEST_POINTS_OF_A_CHUNK),)
+        group.create_dataset(name, data=np.arange(entries, dtype=np.int64), maxshape=(None,), chunks=chunks)
     _create_by_step(group, "NumberOfCells")
     _create_by_step(group, "NumberOfConnectivityIds")
 
@@ -123,13 +125,13 @@ def _create_by_step(
 
 
 def _create_by_point(group: h5py.Group, name: str, values: NDArray[np.floating], unit: str, doc: str) -> None:
-    """An empty dataset that grows by one chunk, all points, per step."""
+    """An empty dataset that grows by whole chunks per step, one for as many points as the first has."""
     dataset = group.create_dataset(
         name,
         (0, *values.shape[1:]),
         values.dtype,
         maxshape=(None, *values.shape[1:]),
-        chunks=values.shape,
+        chunks=(max(len(values), _FEWEST_POINTS_OF_A_CHUNK), *values.shape[1:]),
         compression="gzip",
         compression_opts=1,
         shuffle=True,
@@ -142,7 +144,8 @@ def _append(root: h5py.Group, frame: Frame) -> None:
     """Append the data first and count the step last."""
     steps, points = root["Steps"], len(frame.positions)
     number = int(steps.attrs["NSteps"])
-    first = number * root["Points"].chunks[0]
+    first = _first_free_row(root, number)
+    _put_vertices(root["Vertices"], points)
     _put(root["Points"], first, frame.positions)
     for field in frame.fields:
         _put(root["PointData"][field.name], first, field.stored_values())
@@ -158,6 +161,23 @@ def _append(root: h5py.Group, frame: Frame) -> None:
     for name in ("CellOffsets", "ConnectivityIdOffsets"):
         _put(steps[name], number, np.zeros((1, len(_CELL_KINDS)), dtype=np.int64))
     steps.attrs["NSteps"] = number + 1
+
+
+def _first_free_row(root: h5py.Group, number: int) -> int:
+    """Where the points of a step begin: at a chunk behind those of the step before."""
+    if number == 0:
+        return 0
+    chunk = int(root["Points"].chunks[0])
+    end = int(root["Steps/PointOffsets"][number - 1]) + int(root["NumberOfPoints"][number - 1])
+    return -(-end // chunk) * chunk
+
+
+def _put_vertices(group: h5py.Group, points: int) -> None:
+    """Have as many cells of one point each as a step has points."""
+    for name, entries in (("Connectivity", points), ("Offsets", points + 1)):
+        there = len(group[name])
+        if entries > there:
+            _put(group[name], there, np.arange(there, entries, dtype=np.int64))
 
 
 def _put(dataset: h5py.Dataset, start: int, rows: NDArray[np.generic] | list[float]) -> None:

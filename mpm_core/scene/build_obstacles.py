@@ -56,14 +56,20 @@ def _motion(scene: Scene, section: ObstacleSection, found: Placed) -> Motion:
     velocity, center = in_3d(section.velocity), found.position
     if section.center is not None:
         center = in_3d(section.center)
-    return Steady(pose, velocity, _spin(section.angular_velocity), center)
+    steady = Steady(pose, velocity, _spin(section.angular_velocity), center)
+    # Its velocity bounds the first step, too.
+    steady.before(0.0, 0.0)
+    return steady
 
 
 def _along(table: MotionSection, found: Placed) -> Motion:
     ways = np.array([in_3d(way) for way in table.displacement or ()])
     angles = np.array(table.angle or [0.0] * len(ways))
     turns = Rotation.from_rotvec(np.outer(angles, [0.0, 0.0, 1.0])) * Rotation.from_matrix(found.rotation)
-    return Along(np.array(table.time or ()), found.position + ways, turns)
+    times = np.array(table.time or ())
+    along = Along(times, found.position + ways, turns)
+    along.before(0.0, float(times[1]))
+    return along
 
 
 def _free(scene: Scene, section: FreeSection, found: Placed) -> Motion:
@@ -96,8 +102,8 @@ def _refuse_outside(scene: Scene, number: int, obstacle: Obstacle) -> None:
 def check_start(scene: Scene, obstacles: Sequence[Obstacle], bodies: Sequence[Body]) -> None:
     """Raises InputError for a body in an obstacle, and warns about obstacles too thin to part what is on both sides."""
     for obstacle in obstacles:
-        for number, body in enumerate(bodies):
-            spacing = spacing_of_points(scene, scene.body[number])
+        for section, body in zip(scene.body, bodies, strict=True):
+            spacing = spacing_of_points(scene, section.points_per_cell)
             depth = -distances(obstacle, body.positions)
             inside = depth > DEEPEST_START * spacing
             if inside.any():

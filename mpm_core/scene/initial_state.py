@@ -36,6 +36,8 @@ def build_bodies(scene: Scene, keeps_shear_strain: bool = False) -> list[Body]:
     Raises InputError for empty, overlapping, misplaced or too dense ones.
     """
     bodies: list[Body] = []
+    if not scene.body:
+        return bodies
     positions = [_positions(scene, number, section) for number, section in enumerate(scene.body)]
     _refuse_overlap(scene, positions)
     vertical = vertical_stresses(scene, positions)
@@ -115,6 +117,30 @@ def _build(
     first_id: int,
     keeps_shear_strain: bool,
 ) -> Body:
+    mass = section.density * volume_per_point(scene, section)
+    body = body_of_points(scene, section, positions, vertical, name, mass, first_id, keeps_shear_strain)
+    _warn_without_stiffness(body.law, body.parameters, body.stress[:3], f"{scene.source}: {name}")
+    if scene.in_space.hoop:
+        body.points[body.layout.mass] = point_masses(scene, section, positions)
+    return body
+
+
+def body_of_points(
+    scene: Scene,
+    section: BodySection,
+    positions: NDArray[np.float64],
+    vertical: NDArray[np.float64],
+    name: str,
+    mass: float,
+    first_id: int,
+    keeps_shear_strain: bool,
+    id_stride: int = 1,
+) -> Body:
+    """A body with points at `positions`, shape (n, axes) [m], of one mass [kg]; in axisymmetry that is yet to be set.
+
+    `vertical` is the vertical stress at each point [Pa], as `initial_stress` of the section needs it.
+    Raises InputError for one that is too dense.
+    """
     law = scene.law(section.material)
     parameters = scene.parameters(section.material)
     _check_density(law, parameters, section, name, scene.source)
@@ -127,23 +153,19 @@ def _build(
     points[layout.velocities] = np.reshape(section.velocity, (-1, 1))
     put_density(points, section.density, space)
     points[layout.stress : layout.stress + 3] = normal_stresses(space, section.initial_stress, vertical)
-    _warn_without_stiffness(law, parameters, points[layout.stress : layout.stress + 3], f"{scene.source}: {name}")
     with numbers_of(law.name):
         _initialise_state(law, parameters, points, layout)
-    mass = section.density * volume_per_point(scene, section)
-    if space.hoop:
-        points[layout.mass], mass = point_masses(scene, section, positions), 1.0
-    return Body(name, law, parameters, space, storage, len(positions), mass, first_id)
+    return Body(name, law, parameters, space, storage, len(positions), 1.0 if space.hoop else mass, first_id, id_stride)
 
 
 def volume_per_point(scene: Scene, section: BodySection) -> float:
     """The part of a cell that a point stands for [m3], in plane strain and axisymmetry its area [m2]."""
-    return float(spacing_of_points(scene, section) ** scene.in_space.axes)
+    return float(spacing_of_points(scene, section.points_per_cell) ** scene.in_space.axes)
 
 
-def spacing_of_points(scene: Scene, section: BodySection) -> float:
-    """The distance of neighbouring points of a body at the start [m]."""
-    return scene.grid.cell_size / points_along_edge(section.points_per_cell, scene.in_space.axes)
+def spacing_of_points(scene: Scene, points_per_cell: int) -> float:
+    """The distance of neighbouring points at the start, so many in a cell [m]."""
+    return scene.grid.cell_size / points_along_edge(points_per_cell, scene.in_space.axes)
 
 
 def point_masses(scene: Scene, section: BodySection, positions: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,7 +2,7 @@
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import tomli_w
 from pydantic import Field, PrivateAttr, ValidationError, field_validator, model_validator
@@ -14,6 +14,7 @@ from grainlaw.mpm_core.scene.body_section import BodySection, InitialStressSecti
 from grainlaw.mpm_core.scene.boundary import BoundarySection
 from grainlaw.mpm_core.scene.errors import described
 from grainlaw.mpm_core.scene.file import read_content
+from grainlaw.mpm_core.scene.inflow import InflowSection
 from grainlaw.mpm_core.scene.obstacle import ObstacleSection
 from grainlaw.mpm_core.scene.outline import Points
 from grainlaw.mpm_core.scene.presets import with_settings_for_accuracy
@@ -184,7 +185,8 @@ class Scene(Section):
     material: dict[str, dict[str, Any]] = Field(
         min_length=1, description="[material.NAME]: the law's parameters, and `law` if NAME is not the law's own name"
     )
-    body: Annotated[list[BodySection], Field(min_length=1)]
+    body: list[BodySection] = Field(default=[])
+    inflow: list[InflowSection] = Field(default=[])
     obstacle: list[ObstacleSection] = Field(default=[])
     output: OutputSection = Field(default=OutputSection())
     _source: str = PrivateAttr(default="scene")
@@ -204,6 +206,16 @@ class Scene(Section):
     def in_space(self) -> Space:
         """The space of the scene."""
         return SPACES[self.space]
+
+    @property
+    def with_points(self) -> list[BodySection | InflowSection]:
+        """What material points come from: the bodies and, behind them, the inflows."""
+        return [*self.body, *self.inflow]
+
+    @property
+    def materials(self) -> list[str]:
+        """The names of the materials of all bodies, and behind them those of the inflows."""
+        return [section.material for section in self.with_points]
 
     @property
     def left_is_axis(self) -> bool:
@@ -241,7 +253,13 @@ class Scene(Section):
         if self.in_space.hoop:
             self._refuse_without_axis()
         self.boundary.refuse_for(self.in_space, self.left_is_axis)
-        self._refuse_obstacles()
+        if not self.body and not self.inflow:
+            raise ValueError("body = []: allowed: 1 or more entries, or an [[inflow]]")
+        self._refuse_same_names()
+        for number, obstacle in enumerate(self.obstacle):
+            obstacle.refuse_for(f"obstacle.{number}", self.in_space)
+        for number, inflow in enumerate(self.inflow):
+            inflow.refuse_for(f"inflow.{number}", self.in_space)
         for number, body in enumerate(self.body):
             if len(body.shape.bounds()[0]) != self.in_space.axes:
                 raise ValueError(f"body.{number}.shape: {refused_mesh(body.shape)} in space = '{self.space}'")
@@ -262,12 +280,12 @@ class Scene(Section):
                 "horizontal stresses"
             )
 
-    def _refuse_obstacles(self) -> None:
-        names = [obstacle.name for obstacle in self.obstacle]
-        for number, obstacle in enumerate(self.obstacle):
-            if obstacle.name in names[:number]:
-                raise ValueError(f"obstacle.{number}.name = '{obstacle.name}': there is another of that name")
-            obstacle.refuse_for(f"obstacle.{number}", self.in_space)
+    def _refuse_same_names(self) -> None:
+        for kind in ("obstacle", "inflow"):
+            names = [section.name for section in getattr(self, kind)]
+            for number, name in enumerate(names):
+                if name in names[:number]:
+                    raise ValueError(f"{kind}.{number}.name = '{name}': there is another of that name")
 
     def _refuse_without_axis(self) -> None:
         if self.grid.lower[0] < 0.0:
@@ -302,11 +320,11 @@ class Scene(Section):
 
     @model_validator(mode="after")
     def _materials_exist(self) -> "Scene":
-        for number, body in enumerate(self.body):
-            if body.material not in self.material:
-                raise ValueError(
-                    f"body.{number}.material = '{body.material}': {nearest_name(body.material, self.material)}"
-                )
+        for kind in ("body", "inflow"):
+            for number, section in enumerate(getattr(self, kind)):
+                if section.material not in self.material:
+                    hint = nearest_name(section.material, self.material)
+                    raise ValueError(f"{kind}.{number}.material = '{section.material}': {hint}")
         return self
 
     def law(self, material: str) -> Law:

@@ -17,6 +17,7 @@ from grainlaw.mpm_core.scene.section import (
     number_or_three,
     refuse_beyond,
 )
+from grainlaw.mpm_core.scene.terrain import Terrain
 from grainlaw.mpm_core.space import Space
 
 LARGEST_SPIN = 1e6  # 1/s
@@ -99,7 +100,7 @@ class ObstacleSection(Section):
 
     name: str = Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", description="name in tables, files and messages")
     shape: AnyObstacleShape = Field(
-        description="rectangle, disc, polygon, line, terrain or plane; in 3D box, cylinder, sphere, plane or mesh"
+        description="rectangle, disc, polygon, line, terrain, plane; in 3D box, cylinder, sphere, plane, terrain, mesh"
     )
     friction: float = Field(ge=0, description="Coulomb friction coefficient of its surface [1]")
     hollow: bool = Field(default=False, description="the obstacle is around the shape: a container")
@@ -121,8 +122,8 @@ class ObstacleSection(Section):
             raise ValueError("velocity and angular_velocity, motion, and free exclude one another")
         if self.center is not None and not self.is_turning:
             raise ValueError("a center belongs to an angular_velocity")
-        if isinstance(self.shape, Plane) and (self.free is not None or self.hollow):
-            raise ValueError("a plane is neither free nor hollow")
+        if isinstance(self.shape, Plane | Terrain) and (self.free is not None or self.hollow):
+            raise ValueError(f"a {self.shape.kind} is neither free nor hollow")
         for velocity in (self.velocity, self.free.velocity if self.free else None):
             if velocity is not None:
                 refuse_beyond(velocity, LARGEST_SPEED, "m/s")
@@ -140,6 +141,8 @@ class ObstacleSection(Section):
             known = ", ".join(OBSTACLE_SHAPES[space.axes])
             raise ValueError(f"{key}.shape.kind = '{self.shape.kind}': allowed in space = '{space.name}': {known}")
         self._refuse_components(key, space)
+        if isinstance(self.shape, Terrain):
+            self._read_terrain(self.shape, key, space)
         if space.hoop:
             moved = [self.velocity, self.free.velocity if self.free else None]
             moved += self.motion.displacement or [] if self.motion else []
@@ -147,6 +150,15 @@ class ObstacleSection(Section):
                 raise ValueError(f"{key}: in space = 'axisymmetric' obstacles move along the axis only; allowed: x = 0")
             if self.is_turning or (self.motion is not None and self.motion.angle is not None):
                 raise ValueError(f"{key}: in space = 'axisymmetric' no obstacle turns in the r-y plane")
+
+    def _read_terrain(self, terrain: Terrain, key: str, space: Space) -> None:
+        try:
+            terrain.read_for(space.axes)
+        except ValueError as error:
+            raise ValueError(f"{key}.shape: {error}") from error
+        moves = self.velocity is not None or self.is_turning or self.motion is not None
+        if space.axes == 3 and moves:
+            raise ValueError(f"{key}: terrain in 3D rests; allowed: no velocity, angular_velocity or motion")
 
     def _refuse_components(self, key: str, space: Space) -> None:
         vectors = {"velocity": self.velocity, "center": self.center}

@@ -1,7 +1,6 @@
-"""Shapes that only obstacles have: lines with a thickness, terrain, planes."""
+"""Shapes of obstacles, and those that only they have: lines with a thickness, planes."""
 
 import math
-from itertools import pairwise
 from typing import Annotated, Literal
 
 import numpy as np
@@ -12,6 +11,7 @@ from grainlaw.mpm_core.scene.outline import Points
 from grainlaw.mpm_core.scene.section import Section
 from grainlaw.mpm_core.scene.shapes import Corner, Disc, Polygon, Rectangle
 from grainlaw.mpm_core.scene.solids import Box, Cylinder, Sphere
+from grainlaw.mpm_core.scene.terrain import Terrain
 
 
 class Line(Section):
@@ -44,28 +44,6 @@ class Line(Section):
         return np.array(around.exterior.coords)[:-1]
 
 
-class Terrain(Section):
-    """Ground below a line of points; beyond its ends it goes on level."""
-
-    kind: Literal["terrain"]
-    points: list[Corner] = Field(min_length=2, description="points of the surface, x increasing [m]")
-
-    @model_validator(mode="after")
-    def _runs_to_the_right(self) -> "Terrain":
-        for (x, _), (further, _) in pairwise(self.points):
-            if not further > x:
-                raise ValueError(f"points: x goes from {x:g} to {further:g}; allowed: increasing x")
-        return self
-
-    def outline(self, left: float, right: float, bottom: float) -> Points:
-        """The corners of the ground between two places and down to a third [m], shape (n, 2)."""
-        (first, start), (last, end) = self.points[0], self.points[-1]
-        left, right = min(left, first), max(right, last)
-        before = [(left, start)] if left < first else []
-        behind = [(right, end)] if right > last else []
-        return np.array([(left, bottom), *before, *self.points, *behind, (right, bottom)])
-
-
 class Plane(Section):
     """Everything behind a plane, in two axes behind a line."""
 
@@ -93,5 +71,5 @@ AnyObstacleShape = Annotated[
 # The shapes of obstacles in the spaces with two axes and with three, by kind.
 OBSTACLE_SHAPES: dict[int, tuple[str, ...]] = {
     2: ("rectangle", "disc", "polygon", "line", "terrain", "plane"),
-    3: ("box", "cylinder", "sphere", "plane", "mesh"),
+    3: ("box", "cylinder", "sphere", "plane", "terrain", "mesh"),
 }

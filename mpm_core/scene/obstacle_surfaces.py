@@ -10,11 +10,14 @@ from scipy.spatial.transform import Rotation
 from grainlaw.mpm_core.obstacles import surface as surfaces
 from grainlaw.mpm_core.obstacles.motion import in_3d
 from grainlaw.mpm_core.obstacles.surface import Surface
+from grainlaw.mpm_core.scene.heights import Heights
 from grainlaw.mpm_core.scene.mesh_region import MeshRegion
 from grainlaw.mpm_core.scene.model import GridSection
-from grainlaw.mpm_core.scene.obstacle_shapes import AnyObstacleShape, Line, Plane, Terrain
+from grainlaw.mpm_core.scene.obstacle_shapes import AnyObstacleShape, Line, Plane
 from grainlaw.mpm_core.scene.shapes import Disc, Polygon, Rectangle
 from grainlaw.mpm_core.scene.solids import Box, Cylinder, Sphere
+from grainlaw.mpm_core.scene.terrain import Terrain
+from grainlaw.mpm_core.scene.terrain_distances import distances_of_terrain
 
 Floats = NDArray[np.float64]
 
@@ -39,7 +42,7 @@ class Placed(NamedTuple):
 def placed(shape: AnyObstacleShape, grid: GridSection) -> Placed:
     """The surface of a shape. Raises ValueError where a mesh has none that can be used."""
     if isinstance(shape, Terrain):
-        return _terrain(shape, grid)
+        return _terrain_in_3d(shape.heights, grid) if len(grid.lower) == 3 else _terrain(shape, grid)
     if isinstance(shape, MeshRegion):
         return _mesh(shape, grid)
     return _OF_SHAPES[type(shape)](shape)
@@ -151,8 +154,16 @@ def _rectangle(shape: Rectangle) -> Placed:
 def _terrain(shape: Terrain, grid: GridSection) -> Placed:
     # as far beyond the domain as it is wide and high: no other side is ever the nearest
     far = sum(high - low for low, high in zip(grid.lower, grid.upper, strict=True))
-    lowest = min(grid.lower[1], *(y for _, y in shape.points))
+    lowest = min(grid.lower[1], *(y for _, y in shape.line))
     return _polygon(shape.outline(grid.lower[0] - far, grid.upper[0] + far, lowest - far))
+
+
+def _terrain_in_3d(heights: Heights, grid: GridSection) -> Placed:
+    """The ground below heights. Raises ValueError where they do not cover the domain."""
+    start, spacing, distances = distances_of_terrain(heights, grid, MOST_DISTANCES)
+    middle = start + 0.5 * spacing * (np.array(distances.shape) - 1)
+    surface = surfaces.distance_grid((start - middle).tolist(), spacing, distances)
+    return Placed(surface, middle, np.eye(3), np.inf, np.full(3, np.inf))
 
 
 def _disc(shape: Disc) -> Placed:

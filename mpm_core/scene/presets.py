@@ -38,6 +38,8 @@ def with_settings_for_accuracy(content: Any) -> Any:
         raise ValueError(
             f"accuracy = '{content['accuracy']}' was measured in plane strain, in no other space; {INSTEAD}"
         )
+    if content.get("inflow"):
+        raise ValueError(f"accuracy = '{content['accuracy']}' was measured without an inflow; {INSTEAD}")
     grid, time = content.get("grid"), content.get("time")
     boxes, materials = _boxes(content.get("body"), grid), _materials(content)
     if not isinstance(grid, Mapping) or not isinstance(time, Mapping) or not boxes or not materials:

@@ -24,8 +24,11 @@ def fitted_to_space(content: Any) -> Any:
         if isinstance(value, list | tuple) and len(value) != space.axes:
             names = ", ".join(space.axis_names)
             raise ValueError(f"{key} = {value!r:.60}: space = '{space.name}' takes {space.axes} components, {names}")
-    for number, body in _bodies(content):
-        _refuse_for(space, f"body.{number}", body)
+    for kind in ("body", "inflow"):
+        for number, section in _sections(content, kind):
+            _refuse_points(space, f"{kind}.{number}", section)
+    for number, body in _sections(content, "body"):
+        _refuse_shape(space, f"body.{number}", body)
     return content if space is PLANE_STRAIN else _with_defaults(content, space)
 
 
@@ -41,28 +44,33 @@ def _table(content: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     return table if isinstance(table, Mapping) else {}
 
 
-def _bodies(content: Mapping[str, Any]) -> Iterator[tuple[int, Mapping[str, Any]]]:
-    bodies = content.get("body")
-    for number, body in enumerate(bodies if isinstance(bodies, list | tuple) else ()):
-        if isinstance(body, Mapping):
-            yield number, body
+def _sections(content: Mapping[str, Any], kind: str) -> Iterator[tuple[int, Mapping[str, Any]]]:
+    sections = content.get(kind)
+    for number, section in enumerate(sections if isinstance(sections, list | tuple) else ()):
+        if isinstance(section, Mapping):
+            yield number, section
 
 
 def _vectors(content: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Keys and values of the vectors that are a scene's, whatever its bodies' shapes are."""
+    """Keys and values of the vectors that are a scene's, whatever its shapes are."""
     yield "gravity", content.get("gravity")
     grid = _table(content, "grid")
     yield from ((f"grid.{name}", grid.get(name)) for name in ("lower", "upper"))
-    for number, body in _bodies(content):
-        yield f"body.{number}.velocity", body.get("velocity")
+    for kind in ("body", "inflow"):
+        yield from (
+            (f"{kind}.{number}.velocity", section.get("velocity")) for number, section in _sections(content, kind)
+        )
 
 
-def _refuse_for(space: Space, key: str, body: Mapping[str, Any]) -> None:
-    points = body.get("points_per_cell")
+def _refuse_points(space: Space, key: str, section: Mapping[str, Any]) -> None:
+    points = section.get("points_per_cell")
     allowed = POINTS_PER_CELL[space.axes]
     if type(points) is int and points not in allowed:
         *first, last = map(str, allowed)
         raise ValueError(f"{key}.points_per_cell = {points}: allowed: {', '.join(first)} or {last}")
+
+
+def _refuse_shape(space: Space, key: str, body: Mapping[str, Any]) -> None:
     shape = _table(body, "shape")
     kind = shape.get("kind")
     if not isinstance(kind, str):
@@ -91,6 +99,10 @@ def _with_defaults(content: Mapping[str, Any], space: Space) -> dict[str, Any]:
         filled["body"] = [
             {**defaults, **body, "initial_stress": _without_ratio(body)} if isinstance(body, Mapping) else body
             for body in content["body"]
+        ]
+    if space.axes == 3 and isinstance(content.get("inflow"), list | tuple):
+        filled["inflow"] = [
+            {"points_per_cell": 8, **inflow} if isinstance(inflow, Mapping) else inflow for inflow in content["inflow"]
         ]
     return filled
 

@@ -23,6 +23,7 @@ TIMED_STEPS = 40
 class Plan:
     """What a run of a scene takes.
 
+    points, points_at_end  with what enters until the end where nothing blocks it
     bytes_per_point    of the arrays that hold the points
     memory_bytes       greatest memory of this process while it built the scene and made the first steps, all included;
                        0 where the system does not tell
@@ -37,6 +38,7 @@ class Plan:
 
     laws: list[str]
     points: int
+    points_at_end: int
     cells: int
     active_nodes: int
     bytes_per_point: float
@@ -69,20 +71,22 @@ def _plan(scene: Scene, threads: int) -> Plan:
     build_time = time.perf_counter() - started - simulation.build_time
     stable = simulation.critical_time_step()
     step = scene.time.step or scene.time.safety * stable
-    points = sum(body.count for body in simulation.bodies)
+    points = simulation.initial_points
+    points_at_end = points + simulation.inflows.points_until(scene.time.end)
     stops = math.ceil(scene.time.end / frame_interval(scene) - 1e-9)
     output_time = _output_time(simulation, stops + 1)
     seconds, obstacle_share = _seconds_per_step(simulation)
     memory_bytes = peak_memory()
-    played = rehearsals(scene, points, threads)
-    seconds += played[-1].growth * points
+    played = rehearsals(scene, points_at_end, threads)
+    seconds += played[-1].growth * points_at_end
     steps = _steps(scene, expected_speed(played, scene.grid.cell_size), stops)
     return Plan(
         laws=list(dict.fromkeys(body.law.name for body in simulation.bodies)),
         points=points,
+        points_at_end=points_at_end,
         cells=math.prod(scene.grid.cells),
         active_nodes=simulation.active.nodes,
-        bytes_per_point=sum(body.points.nbytes + body.ids.nbytes for body in simulation.bodies) / points,
+        bytes_per_point=_bytes_per_point(simulation),
         memory_bytes=memory_bytes,
         step=step,
         critical_time_step=stable,
@@ -98,6 +102,11 @@ def _plan(scene: Scene, threads: int) -> Plan:
         near_obstacles=simulation.obstacles.candidates,
         obstacle_share=obstacle_share,
     )
+
+
+def _bytes_per_point(simulation: Simulation) -> float:
+    """Of the body that takes most."""
+    return float(max(body.storage.itemsize * len(body.storage) + body.ids.itemsize for body in simulation.bodies))
 
 
 def _steps(scene: Scene, signal_speed: float, stops: int) -> int:

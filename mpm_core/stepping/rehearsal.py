@@ -68,7 +68,7 @@ def rehearse(scene: Scene, factor: int, threads: int) -> Rehearsal:
             signal_speed, before = simulation.signal_speed, time.perf_counter()
     except SimulationError:
         pass
-    points = simulation.initial_points
+    points = max(1, simulation.initial_points + simulation.inflows.points_until(scene.time.end))
     return Rehearsal(simulation.grid.cell_size, np.array(times), np.array(travelled), _growth(durations) / points)
 
 

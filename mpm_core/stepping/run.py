@@ -51,7 +51,7 @@ def run(
         if is_finished(scene, folder):
             _draw(scene, folder)
             return read_summary(folder)
-        refuse_other_laws(folder, [scene.law(body.material) for body in scene.body])
+        refuse_other_laws(folder, [scene.law(material) for material in scene.materials])
     simulation = built_simulation(scene, threads)
     refuse_impossible_steps(simulation)
     text = scene.to_toml()
@@ -152,17 +152,19 @@ def refuse_impossible_steps(simulation: Simulation) -> None:
 
 def _summary(simulation: Simulation, recorder: Recorder, wall_time: float, compile_time: float) -> RunSummary:
     scene, shape, ledger = simulation.scene, recorder.shape(), simulation.ledger
-    points = simulation.initial_points
-    released = ledger.initial_kinetic + max(0.0, -ledger.potential)
+    points = simulation.initial_points + simulation.inflows.points_in
+    released = ledger.released
     return RunSummary(
         scene=scene.title,
         material=", ".join(dict.fromkeys(body.law.name for body in simulation.bodies)),
-        points=points,
+        points=simulation.initial_points,
         cells=math.prod(scene.grid.cells),
         steps=simulation.steps,
         simulated_time=simulation.time,
         mass_left=ledger.mass_left,
         points_left=points - sum(body.count for body in simulation.bodies),
+        mass_in=ledger.mass_in,
+        points_in=simulation.inflows.points_in,
         wall_time=wall_time,
         compile_time=compile_time,
         point_steps_per_second=points * simulation.steps / max(wall_time - compile_time, 1e-9),

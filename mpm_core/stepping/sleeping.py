@@ -92,13 +92,21 @@ class Sleep:
         """Whether any point sleeps."""
         return any(body.awake < body.count for body in self.bodies)
 
+    def take_in_new_points(self) -> None:
+        """Know of points that came since: from far away, so that they do not sleep before they have rested."""
+        for number, body in enumerate(self.bodies):
+            more = body.generated - self.positions[number].shape[1]
+            if more > 0:
+                self.positions[number] = np.pad(self.positions[number], ((0, 0), (0, more)), constant_values=np.inf)
+        self.bring_sleepers()
+
     def open_window(self, time: float) -> None:
         """Begin a window at a time [s]."""
         self.started = time
         # New memory rather than zeros in the old: occupied only where something is withheld.
         self.withheld = self._nothing_withheld()
         for body, positions in zip(self.bodies, self.positions, strict=True):
-            positions[:, body.ids - body.first_id] = body.positions
+            positions[:, body.numbers] = body.positions
 
     def lay_on_grid(self, active: ActiveNodes, couples_volumes: bool) -> None:
         """Let the active nodes start from what the sleeping points bring; to couple volumes also those."""
@@ -141,7 +149,7 @@ class Sleep:
             return False
         stirred = np.zeros([nodes + 2 * RING for nodes in self.grid.shape], np.bool_)
         for body, positions in zip(self.bodies, self.positions, strict=True):
-            ways = body.positions - positions[:, body.ids - body.first_id]
+            ways = body.positions - positions[:, body.numbers]
             displaced = np.sqrt((ways**2).sum(axis=0)) > self.speed * (time - self.started)
             moving = displaced | self._is_stirred(body.positions)
             mark_first_nodes(body.positions[:, moving], *self._on_marks(stirred))
