@@ -12,13 +12,23 @@ from types import SimpleNamespace
 
 import pytest
 from distributed import Client, KilledWorker, get_worker
-from scenes_for_tests import BLOCK, changed
+from scenes_for_tests import BLOCK, FALLING_SPRING, changed, fresh_registry, write_plugin
 
 from grainlaw.materials import InputError, SimulationError
 from grainlaw.mpm_core import Scene, run
 from grainlaw.studies import cluster, kernels
-from grainlaw.studies.batch import Member, Outcome, _reason, _say_once_when_it_compiles, run_members
+from grainlaw.studies.batch import (
+    Member,
+    Outcome,
+    _files_of_laws,
+    _reason,
+    _say_once_when_it_compiles,
+    perform,
+    run_members,
+)
 from grainlaw.studies.kernels import compiled_once
+
+__all__ = ["fresh_registry"]
 
 # A block that bounces for about half a second of wall time.
 BOUNCING = changed(
@@ -189,6 +199,14 @@ def test_a_scheduler_that_does_not_answer_is_told_in_a_line(tmp_path, monkeypatc
     address = address.format(port=free_port())
     with pytest.raises(InputError, match=f"no scheduler answers at {address} within 1 s"):
         run_members(members(1), tmp_path, scheduler=address)
+
+
+def test_workers_load_the_files_of_laws(tmp_path, fresh_registry):
+    path = write_plugin(tmp_path / "spring.py")
+    scene = changed(FALLING_SPRING, {"material.spring.stiffness": -1.0})
+    assert "unknown law 'spring'" in perform(scene, tmp_path / "00", [], "batch")
+    assert "stiffness = -1" in perform(scene, tmp_path / "00", [path], "batch")
+    assert path in _files_of_laws()
 
 
 def test_a_run_whose_workers_are_killed_again_and_again_tells_so():
