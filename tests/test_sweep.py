@@ -264,6 +264,7 @@ def test_a_folder_with_other_runs_is_refused(swept):
         (["--vary", "body.0.density=2:1:2"], "the range is empty"),
         (["--vary", "body.0.density"], "--vary body.0.density: expected name=value"),
         (["--vary", "body.0.density=-5:5", "--samples", "4"], "body.0.density = -5.0: allowed: > 0"),
+        (["--vary", "time.end=1:2:2", "--set", "time.end=3"], "time.end is both set and varied"),
         ([], "nothing is varied"),
         (["--vary", "time.end=1:2", "--sobol"], "--sobol takes --samples N"),
         (["--vary", "time.end=1:2", "--from", "p.toml", "--samples", "2"], "neither --vary nor --sobol"),

@@ -97,6 +97,9 @@ def sweep(
     asked = _Asked(scene, changes or {}, name)
     variations = variations_of(vary or {})
     design = _designed(content, variations, samples, parameters, sobol, seed)
+    for key in asked.changes:
+        if key in design.keys:
+            raise InputError(f"{key} is both set and varied; choose one")
     refuse_bad_values(variations, asked.check)
     members = _members(design, asked)
     folder = Path(out)
