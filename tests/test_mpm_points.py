@@ -15,7 +15,7 @@ from grainlaw.materials import InputError
 from grainlaw.mpm_core import Scene, run
 from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.shipped import shipped_scenes
-from grainlaw.mpm_core.space import AXISYMMETRIC, PLANE_STRAIN
+from grainlaw.mpm_core.space import AXISYMMETRIC, PLANE_STRAIN, SPACES
 from grainlaw.validation.cases.mpm.piles import ROWS
 from grainlaw.validation.cases.mpm.set_ups import HEIGHT, one_preconsolidation_pressure
 from grainlaw.validation.catalogue import SUITES
@@ -227,6 +227,14 @@ def test_what_tells_no_pile_is_refused_in_a_line(tmp_path, monkeypatch, kind):
     with pytest.raises(InputError, match=message) as refusal:
         observed(write(tmp_path))
     assert "\n" not in str(refusal.value)
+
+
+def test_a_surface_around_an_axis_says_so_itself(tmp_path):
+    path = tmp_path / "disc.csv"
+    path.write_text("# space = axisymmetric\nt,x,h\n1.0,0.0,0.1\n1.0,0.3,0.1\n")
+    state = read_state(path)
+    assert state.description.in_space(SPACES["3d"]) is AXISYMMETRIC
+    assert state.observed(START, SPACES["3d"], 1.0).of("runout")[0] == pytest.approx(0.3, abs=0.01)
 
 
 def test_descriptions_that_are_wrong_are_refused(tmp_path):

@@ -76,7 +76,9 @@ def read_state(path: Path) -> State:
     if path.stat().st_size == 0:
         raise InputError(f"{path} is empty")
     if is_surface_table(path):
-        return State(path, None, StateDescription())
+        # What the kernel's width decides is not asked for yet.
+        space = read_surface_table(path, 1.0).space
+        return State(path, None, StateDescription.model_validate({"space": space.name}))
     return State(path, read_points(path), read_state_description(path))
 
 
