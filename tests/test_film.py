@@ -93,8 +93,10 @@ def test_colours_mean_the_same_in_all_pictures(tmp_path):
         np.testing.assert_allclose(row[int(right * len(row)) - 3], last, atol=0.05)
         np.testing.assert_allclose(row[len(row) // 2], copper[0], atol=0.05)
         assert left == pytest.approx(1.0 - right, abs=0.01)
-    # the bar on the right stays, and so does what is around the panel but for the time
+    # the bar on the right stays, and so does what is around the panel but for the time above it
     assert (pictures[:, :, -90:] == pictures[0, :, -90:]).all()
+    assert (pictures[:, -30:, :-90] == pictures[0, -30:, :-90]).all()
+    assert (pictures[1:, :20, :120] != pictures[:-1, :20, :120]).any(axis=(1, 2, 3)).all()
 
 
 def test_runs_stand_side_by_side_or_below_one_another_at_equal_times(tmp_path):

@@ -136,7 +136,9 @@ class _FilmFigure:
         self.time.set_text(time_label(frames[0].time, self.contents.decimals))
         for number, ((frame, (label, run)), image) in enumerate(zip(self._with_runs(frames), images, strict=True)):
             panel = self.panels[number]
-            panel.clear()
+            # Ticks, which take longest, stay.
+            for drawn in [*panel.images, *panel.patches, *panel.collections]:
+                drawn.remove()
             if not self.in_3d:
                 self._draw_section(number, frame, run)
             elif image is not None:

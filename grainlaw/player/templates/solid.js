@@ -39,8 +39,11 @@ function drawSolid(width, height, dots) {
     around.forEach((corner, i) => context[i ? "lineTo" : "moveTo"](view.x(corner), view.y(corner)));
     context.fill();
   }
+  const obstacles = content.obstacles.frames[state.frame].map((number) => outlines[number]);
+  // Of what is around bodies the far side is shown, which they hide.
+  for (const one of obstacles.filter((outline) => outline.isHollow)) drawFaces(one, view, dots);
   drawBalls(view, width, height);
-  for (const number of content.obstacles.frames[state.frame]) drawFaces(outlines[number], view, dots);
+  for (const one of obstacles.filter((outline) => !outline.isHollow)) drawFaces(one, view, dots);
   drawDirections(view, height, dots);
   drawLength(view, width, height, dots);
 }
