@@ -74,7 +74,9 @@ class _Search:
         return values_at(self.chosen, point, self.start)
 
     def residuals(self, point: Array) -> Array:
-        """Where a run fails they are no numbers: least squares then tries a shorter step."""
+        """Where the law refuses a point, or its run fails, no numbers: least squares then tries a shorter step."""
+        if not self._is_allowed(point):
+            return np.full(self.model.size, np.nan)
         if point.tobytes() not in self.known:
             name = f"search-{len(self.known):02}"
             self.known[point.tobytes()] = self.model.residuals({name: (self.values(point), {})})[name]
