@@ -8,7 +8,8 @@ from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.scene.shipped import shipped_scenes
 from grainlaw.studies.bands import REACH, band, numerical_spread
-from grainlaw.studies.ensemble import SHIFTS, numerical_members, plan
+from grainlaw.studies.draws import Draws
+from grainlaw.studies.ensemble import SHIFTS, drawn_members, numerical_members, plan
 from grainlaw.studies.predict import check_samples
 
 NOTHING = numerical_spread(np.zeros(1), None, None, [])
@@ -70,6 +71,13 @@ def test_parameters_of_the_calibration_hold_in_the_scene():
     material = content["material"]["mu_i_lc"]
     assert (material["static_friction"], material["dynamic_friction"]) == (0.4, 0.7)
     assert material["bulk_modulus"] == scene.material["mu_i_lc"]["bulk_modulus"]
+
+
+def test_more_draws_go_on_with_the_folders_of_fewer():
+    prepared = plan(Scene.load(shipped_scenes()["dem_column"]), get_material("mu_i_lc"))
+    values = tuple({"static_friction": 0.3 + 0.001 * number} for number in range(120))
+    few, many = (drawn_members(prepared, Draws(values[:count], 0)) for count in (20, 120))
+    assert many[:20] == few
 
 
 def test_scene_of_another_law_is_refused():

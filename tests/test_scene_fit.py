@@ -122,6 +122,16 @@ def test_places_of_a_profile_are_independent(truth):
     assert places.heights[[0, -1]] == pytest.approx(0.0, abs=0.03)
 
 
+def test_grains_of_another_column_are_refused_before_anything_is_run(scene, tmp_path):
+    path = tmp_path / "cylinder.csv"
+    path.write_text(
+        "# grain_diameter = 0.015\n# space = axisymmetric\nt,x,h\n0,0.0,0.3\n0,0.15,0.3\n1,0.0,0.2\n1,0.3,0\n"
+    )
+    with pytest.raises(InputError, match="is a plane column, cylinder a cylinder: not the same column"):
+        scene_fit.fit_scene(LAW, scene, [path], ["static_friction"], tmp_path)
+    assert list(tmp_path.iterdir()) == [path]
+
+
 @pytest.mark.parametrize(
     ("fitted", "grains", "message"),
     [

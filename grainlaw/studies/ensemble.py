@@ -54,11 +54,9 @@ def material_of(scene: Scene, law: Law) -> str:
 
 
 def drawn_members(plan: Plan, draws: Draws) -> list[Member]:
-    """A run for each draw."""
-    digits = len(str(len(draws.values)))
+    """A run for each draw; names do not depend on their number, so that more draws go on with fewer."""
     return [
-        Member(f"draw-{number:0{digits}}", plan.with_parameters(values))
-        for number, values in enumerate(draws.values, start=1)
+        Member(f"draw-{number:04}", plan.with_parameters(values)) for number, values in enumerate(draws.values, start=1)
     ]
 
 

@@ -6,13 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
+from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.space import AXISYMMETRIC, PLANE_STRAIN, Space
-from grainlaw.validation.grains.material_points import grain_diameter
+from grainlaw.validation.grains.distance import refuse_other_size
+from grainlaw.validation.grains.material_points import grain_diameter, snapshot_of_bodies
 from grainlaw.validation.grains.observation import Observation
+from grainlaw.validation.grains.observe import observe
 from grainlaw.validation.grains.reference_file import load_reference
-from grainlaw.validation.grains.run_observation import observe_run
+from grainlaw.validation.grains.run_observation import as_grains, observe_run
 
 # Without grains a surface is smoothed over as many cells.
 WIDTH_IN_CELLS = 2.0
@@ -35,7 +38,7 @@ class Observing:
 def observing(scene: Scene, paths: Sequence[Path]) -> Observing:
     """With the kernel of the grains, else as wide as a grain of the law, else two cells.
 
-    Raises InputError in one line for what cannot be read of the grains.
+    Raises InputError in one line for what cannot be read of the grains, and for grains of another column.
     """
     bodies = build_bodies(scene)
     diameter = grain_diameter(bodies)
@@ -50,4 +53,13 @@ def observing(scene: Scene, paths: Sequence[Path]) -> Observing:
         space = grains[0].space
     elif scene.in_space.hoop:
         space = AXISYMMETRIC
+    for found in grains:
+        refuse_other_size(_start(scene, bodies, width, density, space), found)
     return Observing(width, density, space, grains)
+
+
+def _start(scene: Scene, bodies: Sequence[Body], width: float, density: float, space: Space) -> Observation:
+    """The scene before anything moves."""
+    snapshot = snapshot_of_bodies(0.0, bodies, density)
+    setting, whole = as_grains(scene, bodies, [snapshot], width, density, space)
+    return observe(whole, setting, {"label": scene.source})

@@ -16,7 +16,7 @@ from grainlaw.studies.batch import Outcome, run_members
 from grainlaw.studies.draws import Draws, drawn
 from grainlaw.studies.ensemble import ESTIMATE, FINER, SHORTER, Plan, drawn_members, numerical_members, plan
 from grainlaw.studies.observed import observing
-from grainlaw.validation.grains.distance import refuse_other_size, surface_at
+from grainlaw.validation.grains.distance import surface_at
 from grainlaw.validation.grains.observation import Observation
 
 RUNS = "runs"
@@ -112,8 +112,6 @@ def predict(
     seen = {outcome.name: how.observe(outcome.folder) for outcome in outcomes if not outcome.reason}
     failed = tuple(outcome for outcome in outcomes if outcome.reason)
     _refuse_too_few(seen, failed)
-    for found in how.grains:
-        refuse_other_size(seen[ESTIMATE], found)
     x = max((one.x for one in seen.values()), key=len)
     times = seen[ESTIMATE].times
     return Prediction(
