@@ -73,6 +73,12 @@ def test_parameters_of_the_calibration_hold_in_the_scene():
     assert material["bulk_modulus"] == scene.material["mu_i_lc"]["bulk_modulus"]
 
 
+def test_rings_around_an_axis_keep_their_places():
+    scene = Scene.load(shipped_scenes()["dem_cylinder"])
+    law = scene.law(next(iter(scene.material)))
+    assert [member.name for member in numerical_members(plan(scene, law))] == ["estimate", "half-cells", "half-steps"]
+
+
 def test_more_draws_go_on_with_the_folders_of_fewer():
     prepared = plan(Scene.load(shipped_scenes()["dem_column"]), get_material("mu_i_lc"))
     values = tuple({"static_friction": 0.3 + 0.001 * number} for number in range(120))

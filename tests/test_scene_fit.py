@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scenes_for_tests import grainlaw
 
-from grainlaw.materials import InputError, get_material
+from grainlaw.materials import InputError, SimulationError, get_material
 from grainlaw.materials.calibration.findings import Findings
 from grainlaw.materials.calibration.parameter_file import parameter_file, read_calibrated
 from grainlaw.mpm_core.scene.model import Scene
@@ -39,10 +39,17 @@ def run_here(members, out, **options):
     """As `run_members`, without processes of their own."""
     found = []
     for member in members:
+        if member.name in FAILING:
+            found.append(Outcome(member.name, out / member.name, "it broke down"))
+            continue
         run(Scene.from_dict(dict(member.scene)), out / member.name)
         found.append(Outcome(member.name, out / member.name, ""))
         options["report"](found[-1])
     return found
+
+
+# What came of a draw and of half of the step is missing in every prediction here.
+FAILING = {"draw-0003", "half-steps"}
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -98,19 +105,31 @@ def test_steps_of_differences_are_longer_than_the_noise_of_a_run(findings):
 def test_prediction_from_the_fit_holds_the_truth(scene, truth, findings, tmp_path):
     file = tmp_path / "parameters.toml"
     file.write_text(parameter_file(findings))
-    found = predicting.predict(scene, read_calibrated(file), tmp_path, samples=19, grains=[truth])
+    found = predicting.predict(scene, read_calibrated(file), tmp_path, samples=20, grains=[truth])
     runout = found.series["runout"]
     assert runout.lower[-1] < found.grains[0].of("runout")[-1] < runout.upper[-1]
     assert found.profile_within(found.grains[0]) > 0.7
     assert 0.0 < runout.share_of_parameters[-1] < 1.0
     assert (found.profile.lower <= found.profile.drawn_lower).all()
+    assert found.finished_draws == 19
+    assert found.profile.numerics.step.max() == 0.0 < found.profile.numerics.cell.max()
     write_prediction(found, tmp_path, "grainlaw predict")
     written = json.loads((tmp_path / "prediction.json").read_text())
     assert written["at_end"]["runout"]["median"] == pytest.approx(runout.median[-1])
     assert written["grains"][0]["share_of_profile_within_band"] == found.profile_within(found.grains[0])
+    assert written["failed"] == dict.fromkeys(["half-steps", "draw-0003"], "it broke down")
+    assert "draw-0003 failed and is left out: it broke down" in written["notes"]
     profile = np.genfromtxt(tmp_path / "profile.csv", delimiter=",", names=True)
     assert profile["upper"] == pytest.approx(found.profile.upper, rel=1e-6, abs=1e-9)
     assert "Do the bands hold the grains?" in (tmp_path / "prediction.html").read_text()
+
+
+def test_fewer_draws_than_a_band_needs_are_an_error(scene, findings, tmp_path):
+    file = tmp_path / "parameters.toml"
+    file.write_text(parameter_file(findings))
+    short = Scene.from_dict(scene.model_dump() | {"time": {"end": 0.01}})
+    with pytest.raises(SimulationError, match=r"18 draws finished, .*; the first failed: it broke down"):
+        predicting.predict(short, read_calibrated(file), tmp_path, samples=19)
 
 
 def test_places_of_a_profile_are_independent(truth):
