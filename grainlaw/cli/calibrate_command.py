@@ -94,8 +94,8 @@ def calibrate(
         )
         _report_scene_fit(found, out or _folder(law))
         return
-    if dem or set_values or scheduler or resume:
-        raise InputError("--dem, --set, --scheduler and --resume belong to --scene")
+    if dem or set_values or scheduler or workers or resume:
+        raise InputError("--dem, --set, --scheduler, --workers and --resume belong to --scene")
     if not data:
         raise InputError("DATA.csv is missing: name files of element tests, or --scene SCENE --dem FILE")
 
