@@ -82,7 +82,9 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "obstacles.turned_plane",
         "obstacles.oblique_plane",
         "obstacles.earth_pressure",
+        "obstacles.turned_column",
         "obstacles.hopper_discharge",
+        "obstacles.hopper_discharge_3d",
     ),
     # The piles of other MPM codes on the paper's column.
     "mpm": (

@@ -48,7 +48,10 @@ class Cut:
     @property
     def name(self) -> str:
         """Which plane it is; nothing where there is only one."""
-        return "" if self.normal is None else rf"${_NAMES[self.normal]} = {self.place:.3g}\,\mathrm{{m}}$"
+        # A middle of round-off is zero.
+        return (
+            "" if self.normal is None else rf"${_NAMES[self.normal]} = {round(self.place, 9) + 0.0:.3g}\,\mathrm{{m}}$"
+        )
 
     def points_within(self, reach: float, positions: NDArray[np.float64]) -> ShownPoints:
         """The points, of shape (n, 3) [m], that lie within `reach` [m] of the plane, and the mirrored ones."""
