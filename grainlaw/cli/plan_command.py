@@ -30,6 +30,7 @@ def plan(
 
     with noticed_compilation(say_that_it_compiles):
         planned = plan_scene(scene, usable_threads(threads))
+    mean_points = 0.5 * (planned.points + planned.points_at_end)
     table = Table(title=scene.title or scene_file.stem, show_header=False)
     rows = {
         "laws": ", ".join(planned.laws),
@@ -40,7 +41,7 @@ def plan(
         "basis, transfer": f"{scene.transfer.basis}, {scene.transfer.scheme}, time constant {scene.blend_time:g} s",
         "time step": f"{planned.step:.3g} s at the start (stable: {planned.critical_time_step:.3g} s)",
         "steps": f"about {planned.steps:,}",
-        "rate": f"{planned.points_at_end / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "
+        "rate": f"{mean_points / planned.seconds_per_step / 1e6:.1f} million point-steps/s, "
         f"{counted(planned.threads, 'thread')}",
         "expected duration": f"{planned.wall_time:.1f} s, of which output {planned.output_time:.1f} s",
         "kernels": _kernels(planned.compile_time),
