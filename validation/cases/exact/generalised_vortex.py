@@ -18,7 +18,7 @@ from grainlaw.validation.scenes import advance, simulation_of
 Array = NDArray[np.float64]
 
 BAND = 2e-2
-LEAST_ORDER = 1.8
+LEAST_ORDER = 1.9
 INNER, OUTER = 0.75, 1.25
 YOUNGS_MODULUS, POISSON_RATIO, DENSITY = 1e6, 0.3, 1000.0
 BULK_MODULUS = YOUNGS_MODULUS / (3.0 * (1.0 - 2.0 * POISSON_RATIO))
