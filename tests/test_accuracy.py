@@ -1,7 +1,5 @@
 """`accuracy` in a scene: what it sets, what it leaves alone, what it refuses."""
 
-import math
-
 import pytest
 from scenes_for_tests import CAM_CLAY, COLUMN, changed
 
@@ -27,10 +25,10 @@ def test_it_sets_what_the_scene_leaves_open():
 
 
 @pytest.mark.parametrize(
-    ("accuracy", "width", "most"), [("3%", 0.2, 0.2 / 32), ("3%", 1.0, 1 / 68), ("1%", 1.0, 1 / 96)]
+    ("accuracy", "height", "most"), [("10%", 0.2, 0.2 / 8), ("3%", 0.2, 0.2 / 32), ("3%", 1.0, 1 / 68)]
 )
-def test_fine_settings_resolve_width_and_size(accuracy, width, most):
-    block = {"kind": "rectangle", "lower": [1.0, 0.0], "upper": [1.0 + width, 1.0]}
+def test_settings_resolve_width_and_size(accuracy, height, most):
+    block = {"kind": "rectangle", "lower": [1.0, 0.0], "upper": [2.0, height]}
     scene = Scene.from_dict(changed(COLUMN, {"accuracy": accuracy, "grid.cell_size": None, "body.0.shape": block}))
     cell_size = scene.grid.cell_size
     assert 0.95 * most < cell_size < 1.000001 * most
@@ -43,13 +41,11 @@ def test_the_blend_time_follows_the_cells_unless_it_is_stated():
 
 
 def test_normally_consolidated_clay_has_settings_of_its_own():
-    scene = Scene.from_dict(changed(COLUMN, {**clay(1.0), "accuracy": "10%", "grid.cell_size": None}))
-    assert scene.grid.cell_size == pytest.approx(0.3 / 48)
-    squat = {"kind": "rectangle", "lower": [1.0, 0.0], "upper": [1.4, 0.6]}
+    square = {"kind": "rectangle", "lower": [1.0, 0.0], "upper": [1.6, 0.6]}
     scene = Scene.from_dict(
-        changed(COLUMN, {**clay(1.0), "accuracy": "3%", "grid.cell_size": None, "body.0.shape": squat})
+        changed(COLUMN, {**clay(1.0), "accuracy": "10%", "grid.cell_size": None, "body.0.shape": square})
     )
-    assert 0.95 * math.sqrt(0.24) / 80 < scene.grid.cell_size < 1.000001 * math.sqrt(0.24) / 80
+    assert scene.grid.cell_size == pytest.approx(0.6 / 60)
     assert scene.body[0].points_per_cell == 16
 
 
@@ -57,26 +53,23 @@ def test_normally_consolidated_clay_has_settings_of_its_own():
     ("changes", "message"),
     [
         (
-            {**clay(1.0), "accuracy": "1%"},
-            "not reached on any grid with material.modified_cam_clay and its parameters; allowed: 10%, 3%",
+            {**clay(1.0), "accuracy": "3%"},
+            "confirmed by no measurement with material.modified_cam_clay and its parameters; allowed: 10%",
         ),
-        ({**clay(1.0), "accuracy": "3%"}, "up to 1.5 times as high as wide, not 2.67 times"),
+        ({"accuracy": "1%"}, "confirmed by no measurement with material.mu_i_lc and its parameters; allowed: 10%, 3%"),
+        ({**clay(1.0), "accuracy": "10%"}, "up to 1 times as high as wide, not 2.67 times"),
         (
-            {**clay(4.0), "accuracy": "3%"},
-            "with material.modified_cam_clay and its parameters; allowed: 10%",
-        ),
-        (
-            {**clay(2.0), "accuracy": "10%"},
+            {**clay(4.0), "accuracy": "10%"},
             "with material.modified_cam_clay and its parameters; state grid.cell_size and time.safety instead",
         ),
         ({"accuracy": "10%", "grid.cell_size": None, "grid.upper": [3.1, 1.037]}, "divide the domain"),
         (
-            {"accuracy": "1%", "grid.cell_size": None, "material.mu_i_lc.grain_diameter": 0.007},
-            "cells of 0.005 m, finer than the grains of 0.007 m",
+            {"accuracy": "10%", "grid.cell_size": None, "material.mu_i_lc.grain_diameter": 0.03},
+            "cells of 0.0286 m, finer than the grains of 0.03 m",
         ),
     ],
 )
-def test_what_no_grid_reached_is_refused(changes, message):
+def test_what_no_measurement_confirms_is_refused(changes, message):
     with pytest.raises(InputError, match=message):
         Scene.from_dict(changed(COLUMN, changes))
 

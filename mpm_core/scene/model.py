@@ -167,8 +167,8 @@ class Scene(Section):
         default=None,
         description="sets grid.cell_size, time.safety, body.points_per_cell and precision "
         "where the scene does not, to what kept runout, height and centre of mass of column collapses within this of "
-        "finer grids; refused where that was not reached, and for bodies few grains wide, or more slender than those "
-        "with which it was",
+        "finer grids; refused where no measurement confirms it, and for bodies few grains wide, or more slender than "
+        "those that were measured",
     )
     precision: Literal["double", "single"] = Field(
         default="double",

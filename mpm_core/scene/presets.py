@@ -1,8 +1,8 @@
 """Settings for a stated accuracy: cells, points, step, precision, transfer: a scene need not choose them.
 
-A law states with what resolution it kept to an accuracy (`Law.resolutions`): `grainlaw validate speed_error` measured
-how runout, height of the pile and height of the centre of mass of column collapses differ from their mean on finer
-grids, in single precision. Where a law states none, a scene that asks for it is refused.
+A law states with what resolution it kept to an accuracy (`Law.resolutions`): by how much runout, height of the pile and
+height of the centre of mass of column collapses differ from finer grids, in single precision (docs/accuracy.md). Where
+a law states none, a scene that asks for it is refused.
 """
 
 import math
@@ -28,9 +28,9 @@ def with_settings_for_accuracy(content: Any) -> Any:
     """The tables of a scene, with what it leaves open of the settings filled in where `accuracy` asks for it.
 
     Raises ValueError in another space than plane strain, for a law or its parameters that are wrong, for an accuracy
-    that was not reached with a law of the scene or with bodies as slender as these, where its cells would be finer than
-    the grains, and where no cell size divides the domain. What is not well-formed is left to the validation of the
-    scene.
+    that no measurement confirms with a law of the scene or with bodies as slender as these, where its cells would be
+    finer than the grains, and where no cell size divides the domain. What is not well-formed is left to the validation
+    of the scene.
     """
     if not isinstance(content, Mapping) or content.get("accuracy") not in ACCURACIES:
         return content
@@ -87,7 +87,7 @@ def _strictest(accuracy: str, stated: Mapping[str, Mapping[str, Resolution]]) ->
         if accuracy not in reached:
             allowed = f"allowed: {', '.join(reached)}" if reached else INSTEAD
             raise ValueError(
-                f"accuracy = '{accuracy}' was not reached on any grid with material.{material} and its parameters; "
+                f"accuracy = '{accuracy}' is confirmed by no measurement with material.{material} and its parameters; "
                 f"{allowed}"
             )
         chosen.append(reached[accuracy])
@@ -101,11 +101,11 @@ def _strictest(accuracy: str, stated: Mapping[str, Mapping[str, Resolution]]) ->
 
 
 def _refuse_slender_bodies(accuracy: str, boxes: Iterable[tuple[float, float]], resolution: Resolution) -> None:
-    """Bodies higher over their width than those with which the accuracy was reached."""
+    """Bodies higher over their width than those with which the accuracy was measured."""
     slenderest = max(height / width for width, height in boxes)
     if slenderest > resolution.slenderness * (1.0 + 1e-9):
         raise ValueError(
-            f"accuracy = '{accuracy}' was reached with bodies of these materials up to {resolution.slenderness:g} "
+            f"accuracy = '{accuracy}' was measured with bodies of these materials up to {resolution.slenderness:g} "
             f"times as high as wide, not {slenderest:.3g} times; {INSTEAD}"
         )
 
