@@ -14,8 +14,8 @@ from grainlaw.materials.calibration.parameter_file import parameter_file, read_c
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.scene.shipped import shipped_scenes
 from grainlaw.mpm_core.stepping.run import run
+from grainlaw.studies import batch, scene_fit
 from grainlaw.studies import predict as predicting
-from grainlaw.studies import profiles, scene_fit
 from grainlaw.studies.batch import Outcome
 from grainlaw.studies.ensemble import plan
 from grainlaw.studies.observed import observing
@@ -55,8 +55,7 @@ FAILING = {"draw-0003", "half-steps"}
 @pytest.fixture(scope="module", autouse=True)
 def without_processes():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(profiles, "run_members", run_here)
-        patch.setattr(predicting, "run_members", run_here)
+        patch.setattr(batch, "run_members", run_here)
         here = SimpleNamespace(scheduler_info=lambda: {"address": ""})
         patch.setattr(scene_fit, "workers_of", lambda scheduler, workers: nullcontext(here))
         yield

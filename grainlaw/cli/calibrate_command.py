@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from grainlaw.cli.options import PluginFiles, assigned, load_plugins, numbers
+from grainlaw.cli.options import PluginFiles, assigned, load_plugins, numbers, stops_told
 from grainlaw.cli.scene_options import SetValues, load_scene
-from grainlaw.materials import InputError, SimulationError
+from grainlaw.materials import InputError
 
 if TYPE_CHECKING:
     from grainlaw.materials.calibration.findings import Findings
@@ -143,7 +143,7 @@ def _fitted_to_scene(
     loaded = load_scene(scene, set_values)
     folder = out or _folder(law_name)
     prepare(folder)
-    try:
+    with stops_told():
         return fit_scene(
             law,
             loaded,
@@ -156,8 +156,6 @@ def _fitted_to_scene(
             workers=workers,
             resume=resume,
         )
-    except KeyboardInterrupt as interrupt:
-        raise SimulationError(getattr(interrupt, "__notes__", ["stopped by Ctrl-C"])[-1]) from interrupt
 
 
 def _report_scene_fit(found: "SceneFit", out: Path) -> None:

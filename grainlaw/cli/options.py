@@ -1,11 +1,13 @@
 """Options that several commands share."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from grainlaw.materials import InputError, registry
+from grainlaw.materials import InputError, SimulationError, registry
 
 PluginFiles = Annotated[
     list[Path] | None, typer.Option("--plugin", metavar="FILE.py", help="Also load the laws of this file; repeatable.")
@@ -40,6 +42,15 @@ def numbers(values: dict[str, str], option: str = "--set") -> dict[str, float]:
         except ValueError:
             raise InputError(f"{option} {name}={text}: '{text}' is not a number") from None
     return found
+
+
+@contextmanager
+def stops_told(without_note: str = "stopped by Ctrl-C") -> Iterator[None]:
+    """Turn Ctrl-C into a SimulationError that says what the interrupt notes of how to go on."""
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        raise SimulationError(getattr(interrupt, "__notes__", [without_note])[-1]) from interrupt
 
 
 def counted(number: int, name: str) -> str:

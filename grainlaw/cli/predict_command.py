@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from grainlaw.cli.options import PluginFiles, counted, load_plugins
+from grainlaw.cli.options import PluginFiles, counted, load_plugins, stops_told
 from grainlaw.cli.scene_options import SceneFile, SetValues, load_scene
-from grainlaw.materials import SimulationError
 
 if TYPE_CHECKING:
     from grainlaw.studies.predict import Prediction
@@ -56,7 +55,7 @@ def predict(
     calibrated = read_calibrated(source)
     folder = out or Path("runs") / f"predict_{scene_file.stem}"
     prepare(folder)
-    try:
+    with stops_told():
         found = predicted(
             scene,
             calibrated,
@@ -68,8 +67,6 @@ def predict(
             workers=workers,
             resume=resume,
         )
-    except KeyboardInterrupt as interrupt:
-        raise SimulationError(getattr(interrupt, "__notes__", ["stopped by Ctrl-C"])[-1]) from interrupt
     references = "".join(f" --dem {path}" for path in dem or ())
     changes = "".join(f" --set {text}" for text in set_values or ())
     command = f"grainlaw predict {scene_file} --from {source} --samples {samples} --seed {seed}{references}{changes}"

@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from grainlaw.cli.options import PluginFiles, counted, load_plugins
+from grainlaw.cli.options import PluginFiles, counted, load_plugins, stops_told
 from grainlaw.cli.scene_options import SceneFile, SetValues, load_scene
-from grainlaw.materials import SimulationError
 
 if TYPE_CHECKING:
     from grainlaw.mpm_core.output.summary import RunSummary
@@ -37,19 +36,18 @@ def run(
     from grainlaw.mpm_core.stepping.run import run as run_scene
     from grainlaw.progress import shown_progress
 
-    try:
-        with shown_progress(scene.time.end, lines_otherwise=True) as progress:
-            summary = run_scene(
-                scene,
-                folder,
-                threads=usable_threads(threads),
-                resume=resume,
-                overwrite=overwrite,
-                progress=progress,
-            )
-    except KeyboardInterrupt as interrupt:
-        notes = getattr(interrupt, "__notes__", ["stopped by Ctrl-C before the first step; nothing was written"])
-        raise SimulationError(notes[-1]) from interrupt
+    with (
+        stops_told("stopped by Ctrl-C before the first step; nothing was written"),
+        shown_progress(scene.time.end, lines_otherwise=True) as progress,
+    ):
+        summary = run_scene(
+            scene,
+            folder,
+            threads=usable_threads(threads),
+            resume=resume,
+            overwrite=overwrite,
+            progress=progress,
+        )
     _print_result(folder, summary, scene.in_space.amount)
 
 

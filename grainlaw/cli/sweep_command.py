@@ -5,9 +5,8 @@ from typing import Annotated
 
 import typer
 
-from grainlaw.cli.options import PluginFiles, assigned, counted, load_plugins
+from grainlaw.cli.options import PluginFiles, assigned, counted, load_plugins, stops_told
 from grainlaw.cli.scene_options import SceneFile, SetValues
-from grainlaw.materials import SimulationError
 
 MOST_REASONS = 5
 
@@ -68,7 +67,7 @@ def sweep(
     from grainlaw.mpm_core.scene.file import value_of_text
     from grainlaw.studies.sweep import sweep as sweep_scene
 
-    try:
+    with stops_told("stopped by Ctrl-C before the first run"):
         found = sweep_scene(
             scene_file,
             out or Path("runs") / f"{scene_file.stem}-sweep",
@@ -82,9 +81,6 @@ def sweep(
             workers=workers,
             resume=resume,
         )
-    except KeyboardInterrupt as interrupt:
-        notes = getattr(interrupt, "__notes__", ["stopped by Ctrl-C before the first run"])
-        raise SimulationError(notes[-1]) from interrupt
     finished = len(found.outcomes) - len(found.failed)
     typer.echo(f"{counted(len(found.outcomes), 'run')}: {finished} finished, {len(found.failed)} failed")
     for outcome in found.failed[:MOST_REASONS]:

@@ -25,6 +25,7 @@ from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.stepping.compilation import noticed_compilation
 from grainlaw.mpm_core.stepping.resumed_scene import is_finished, resumed_scene
 from grainlaw.mpm_core.stepping.run import run
+from grainlaw.progress import shown_runs
 from grainlaw.studies.cluster import workers_of
 from grainlaw.studies.kernels import compiled_once
 
@@ -85,6 +86,26 @@ def run_members(
                     found[outcome.name] = outcome
                     report(outcome)
     return [found[member.name] for member in members]
+
+
+def run_shown(
+    members: Sequence[Member],
+    out: Path,
+    *,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    resume: bool = False,
+) -> list[Outcome]:
+    """As `run_members`, with the progress shown."""
+    with shown_runs(len(members)) as count:
+        return run_members(
+            members,
+            out,
+            scheduler=scheduler,
+            workers=workers,
+            resume=resume,
+            report=lambda outcome: count(outcome.name, outcome.reason),
+        )
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from grainlaw.materials import InputError
+from grainlaw.materials import InputError, Law
 from grainlaw.materials.calibration.parameter_file import Calibrated
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ def drawn(calibrated: Calibrated, samples: int, seed: int) -> Draws:
     refused = 0
     while len(found) < samples:
         values = _one_draw(calibrated, factor, random)
-        if _is_allowed(calibrated, values):
+        if allows(calibrated.law, values):
             found.append(values)
             continue
         refused += 1
@@ -74,9 +74,10 @@ def _one_draw(calibrated: Calibrated, factor: Array, random: np.random.Generator
     return values
 
 
-def _is_allowed(calibrated: Calibrated, values: dict[str, float]) -> bool:
+def allows(law: Law, values: dict[str, float]) -> bool:
+    """Whether a law takes these values of its parameters, by name."""
     try:
-        calibrated.law.checked(values, calibrated.law.name)
+        law.checked(values, law.name)
     except InputError:
         return False
     return True

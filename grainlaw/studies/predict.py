@@ -10,9 +10,8 @@ from grainlaw.materials import InputError, SimulationError
 from grainlaw.materials.calibration.parameter_file import Calibrated
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.space import Space
-from grainlaw.progress import shown_runs
 from grainlaw.studies.bands import FEWEST_DRAWS, Array, Band, NumericalSpread, band, numerical_spread
-from grainlaw.studies.batch import Outcome, run_members
+from grainlaw.studies.batch import Outcome, run_shown
 from grainlaw.studies.draws import Draws, drawn
 from grainlaw.studies.ensemble import ESTIMATE, FINER, SHORTER, Plan, drawn_members, numerical_members, plan
 from grainlaw.studies.observed import observing
@@ -100,15 +99,7 @@ def predict(
     prepared, draws = plan(scene, calibrated.law, calibrated.values), drawn(calibrated, samples, seed)
     how = observing(Scene.from_dict(prepared.content, scene.source), grains)
     members = [*numerical_members(prepared), *drawn_members(prepared, draws)]
-    with shown_runs(len(members)) as count:
-        outcomes = run_members(
-            members,
-            out / RUNS,
-            scheduler=scheduler,
-            workers=workers,
-            resume=resume,
-            report=lambda outcome: count(outcome.name, outcome.reason),
-        )
+    outcomes = run_shown(members, out / RUNS, scheduler=scheduler, workers=workers, resume=resume)
     seen = {outcome.name: how.observe(outcome.folder) for outcome in outcomes if not outcome.reason}
     failed = tuple(outcome for outcome in outcomes if outcome.reason)
     _refuse_too_few(seen, failed)

@@ -15,8 +15,7 @@ import numpy as np
 from grainlaw.materials import Law
 from grainlaw.materials.calibration.coordinates import Array
 from grainlaw.mpm_core.scene.model import Scene
-from grainlaw.progress import shown_runs
-from grainlaw.studies.batch import Member, run_members
+from grainlaw.studies.batch import Member, run_shown
 from grainlaw.studies.ensemble import plan
 from grainlaw.studies.observed import Observing
 from grainlaw.validation.grains.distance import surface_at
@@ -86,14 +85,7 @@ class ProfileModel:
         """(run - grains) over the size of the grains' profile, for each of some runs; NaN for one that failed."""
         prepared = plan(self.scene, self.law)
         members = [Member(name, prepared.with_parameters(*what)) for name, what in asked.items()]
-        with shown_runs(len(members)) as count:
-            outcomes = run_members(
-                members,
-                self.out / RUNS,
-                scheduler=self.scheduler,
-                resume=self.resume,
-                report=lambda outcome: count(outcome.name, outcome.reason),
-            )
+        outcomes = run_shown(members, self.out / RUNS, scheduler=self.scheduler, resume=self.resume)
         return {
             outcome.name: np.full(self.size, np.nan) if outcome.reason else self._compared(outcome.folder)
             for outcome in outcomes

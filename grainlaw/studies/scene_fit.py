@@ -1,7 +1,6 @@
 """Calibration on whole scenes: parameters of a law from profiles of grains, by running the scene.
 
-Measured are heights of the surface at the end, at places so far apart that the kernel of the observation leaves them
-independent of one another: smoothed by a Gaussian of width w, noise keeps a correlation length of 2 sqrt(pi) w.
+Measured are heights of the surface at the end (`profiles`).
 
 A run answers with a noise of its own: points that lie elsewhere within their cells give another pile. It is measured at
 the start from four such places, and differences are taken over steps in which the answer changes by several times as
@@ -32,6 +31,7 @@ from grainlaw.materials.calibration.findings import reach_of
 from grainlaw.materials.calibration.fit import Fit, check_names
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.studies.cluster import workers_of
+from grainlaw.studies.draws import allows
 from grainlaw.studies.ensemble import ESTIMATE, material_of, numerical_changes, plan
 from grainlaw.studies.observed import observing
 from grainlaw.studies.profiles import Asked, ProfileModel, places_of
@@ -146,11 +146,7 @@ class _Search:
         return columns
 
     def _is_allowed(self, point: Array) -> bool:
-        try:
-            self.model.law.checked(self.values(point), self.model.law.name)
-        except InputError:
-            return False
-        return True
+        return allows(self.model.law, self.values(point))
 
 
 def fit_scene(

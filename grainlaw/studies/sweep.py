@@ -15,8 +15,7 @@ from grainlaw.face.tables import data_frame
 from grainlaw.materials import InputError, atomic
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.space import PLANE_STRAIN, SPACES
-from grainlaw.progress import shown_runs
-from grainlaw.studies.batch import Member, Outcome, run_members
+from grainlaw.studies.batch import Member, Outcome, run_shown
 from grainlaw.studies.design import (
     Design,
     drawn_design,
@@ -103,15 +102,7 @@ def sweep(
     refuse_bad_values(variations, asked.check)
     members = _members(design, asked)
     folder = Path(out)
-    with shown_runs(len(members)) as count:
-        outcomes = run_members(
-            members,
-            folder,
-            scheduler=scheduler,
-            workers=workers,
-            resume=resume,
-            report=lambda outcome: count(outcome.name, outcome.reason),
-        )
+    outcomes = run_shown(members, folder, scheduler=scheduler, workers=workers, resume=resume)
     table = swept(design, outcomes, SPACES[str(content.get("space", PLANE_STRAIN.name))])
     command = _command(asked, variations, samples, parameters, sobol)
     files = [*write_tables(table, folder), folder / PAGE_NAME]

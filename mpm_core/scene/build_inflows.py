@@ -16,7 +16,7 @@ from grainlaw.mpm_core.obstacles.contact import distances
 from grainlaw.mpm_core.obstacles.obstacle import Obstacle
 from grainlaw.mpm_core.scene.body_section import BodySection, InitialStressSection
 from grainlaw.mpm_core.scene.inflow import InflowSection, Layer
-from grainlaw.mpm_core.scene.initial_state import body_of_points, spacing_of_points
+from grainlaw.mpm_core.scene.initial_state import body_of_points, place_in_text, spacing_of_points
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.stepping.time_step import signal_bounds
 
@@ -83,10 +83,9 @@ def _refuse_place(scene: Scene, what: str, layer: Layer, velocity: NDArray[np.fl
     lower, upper, places = np.array(scene.grid.lower), np.array(scene.grid.upper), layer.centers
     outside = ((places < lower) | (places > upper)).any(axis=1)
     if outside.any():
-        place = ", ".join(f"{coordinate:g}" for coordinate in places[int(np.argmax(outside))])
         raise InputError(
             f"{what}: {outside.sum()} of its {len(places)} points would enter outside the domain {lower.tolist()} to "
-            f"{upper.tolist()}, the first at ({place})"
+            f"{upper.tolist()}, the first at {place_in_text(places[outside][0])}"
         )
     reach = 0.5 * BASES[scene.transfer.basis].width * scene.grid.cell_size
     for axis, sides in enumerate(scene.in_space.sides):

@@ -60,12 +60,13 @@ def _positions(scene: Scene, number: int, section: BodySection) -> NDArray[np.fl
     if outside.any():
         raise InputError(
             f"body.{number}: {outside.sum()} of {len(positions)} points lie outside the domain "
-            f"{list(scene.grid.lower)} to {list(scene.grid.upper)}, the first at {_place(positions[outside][0])}"
+            f"{list(scene.grid.lower)} to {list(scene.grid.upper)}, the first at {place_in_text(positions[outside][0])}"
         )
     return positions
 
 
-def _place(point: NDArray[np.float64]) -> str:
+def place_in_text(point: NDArray[np.float64]) -> str:
+    """The coordinates of a point for a message."""
     return f"({', '.join(f'{coordinate:g}' for coordinate in point)})"
 
 
@@ -104,7 +105,7 @@ def _refuse_overlap(scene: Scene, positions: list[NDArray[np.float64]]) -> None:
             in_second = positions[first][section.shape.contains(positions[first])]
             in_first = positions[second][scene.body[first].shape.contains(positions[second])]
             if len(in_second) or len(in_first):
-                place = _place((*in_second, *in_first)[0])
+                place = place_in_text((*in_second, *in_first)[0])
                 raise InputError(f"body.{first} and body.{second} overlap, for instance at {place}")
 
 
