@@ -1,5 +1,6 @@
 # make demo    set up, run the paper's column collapse with three materials on a coarse grid, compare them
 # make figure2 set up, run the six columns of the paper's Figure 2, ours and as published, and compare them; minutes
+# make unified set up, run the column with both unified laws beside their parents, compare them; two minutes
 # make test    set up, run the tests
 # make lint    set up, check style and types
 # make bench   set up, time the library against a yardstick and the machine; about half an hour
@@ -16,7 +17,11 @@ MATERIALS := mu_i_lc mcc_ocr1 mcc_ocr4
 FIGURE2 := runs/figure2
 COLUMNS := $(MATERIALS) mu_i_lc_published mcc_ocr1_published mcc_ocr4_published
 
-.PHONY: demo figure2 test lint docs bench
+UNIFIED := runs/unified
+STATE := mu_i_state_loose mu_i_state_dense
+CLAY := mu_i_mcc_ocr1 mu_i_mcc_ocr4
+
+.PHONY: demo figure2 unified test lint docs bench
 
 $(INSTALLED): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and \
@@ -43,6 +48,16 @@ figure2: $(INSTALLED)
 	done
 	@$(BIN)/grainlaw compare $(COLUMNS:%=$(FIGURE2)/%) --out $(FIGURE2)/comparison
 	@echo "pictures:  $(FIGURE2)/comparison/*.png"
+
+unified: $(INSTALLED)
+	@for column in $(MATERIALS) $(CLAY) $(STATE); do \
+		$(BIN)/grainlaw run scenes/collapse_$$column.toml --set grid.cell_size=0.0125 --threads 1 \
+			--out $(UNIFIED)/$$column --overwrite || exit 1; \
+	done
+	@$(BIN)/grainlaw compare $(STATE:%=$(UNIFIED)/%) --out $(UNIFIED)/state
+	@$(BIN)/grainlaw compare $(MATERIALS:%=$(UNIFIED)/%) $(STATE:%=$(UNIFIED)/%) --out $(UNIFIED)/state_and_parents
+	@$(BIN)/grainlaw compare $(MATERIALS:%=$(UNIFIED)/%) $(CLAY:%=$(UNIFIED)/%) --out $(UNIFIED)/clay_and_parents
+	@echo "pictures:  $(UNIFIED)/*/*.png"
 
 # A file stays with one worker, so that what its tests share is made once; tests/conftest.py says which come first.
 test: $(INSTALLED)

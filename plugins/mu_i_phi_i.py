@@ -17,11 +17,10 @@ It is well-posed with a bulk friction above 1 - 7 mu/6 (Heyman et al. 2017). Her
 rate gamma_dot moves the pressure by -d/(gamma_dot a chi I) of itself, a bulk friction of about 1/(a chi I), above 10
 for the sets below at I = 0.1: the delay regularises them, and elasticity (1) bounds the rest.
 
-Over a step I is the unknown. Given I, psi is known and (1) with (4) is a quadratic in sqrt(p); the excess of the trial
-stress over (5) is positive at I = 0 and negative once the trial shear has all become plastic: the root is bracketed,
-and found by the secant method with bisection. Looser than phi_min, compaction can take the pressure faster than any
-I p^(1/2) uses up the trial shear; then there is no root, and the grains part: p = 0, phi_j = phi. Open points neither
-flow nor dilate: phi_j stays, and they close where they opened. A root that is not found makes the stress NaN.
+Over a step I is the unknown, found in a bracket (`plugins/mu_i/consistent_flow.py`). Given I, psi is known and (1) with
+(4) is a quadratic in sqrt(p). Looser than phi_min, compaction can take the pressure faster than any I p^(1/2) uses up
+the trial shear; then there is no root, and the grains part: p = 0, phi_j = phi. Open points neither flow nor dilate:
+phi_j stays, and they close where they opened. A root that is not found makes the stress NaN.
 
 Source: dilatancy (3) after Roux & Radjai (1998) and Pailha & Pouliquen (2009), J. Fluid Mech. 633, a = 4.09 there;
 phi(I) as in Forterre & Pouliquen (2008); well-posedness: Heyman, Delannay, Tabuteau & Valance (2017), J. Fluid Mech.
@@ -55,15 +54,11 @@ from grainlaw.materials import (
     shear_modulus,
     stress_ratio,
 )
+from grainlaw.plugins.mu_i.consistent_flow import Flow, consistent_flow_of
 from grainlaw.plugins.mu_i.friction import friction_of_inertial_number, own_inertial_number_constant
 
 # Of the trial stress.
 TOLERANCE = 1e-12
-# The same, where round-off keeps I from more.
-LARGEST_ERROR = 1e-6
-MAXIMUM_ITERATIONS = 200
-# Beyond it no pressure is left: at 1000 1/s and 15 mm less than 1e-6 Pa.
-LARGEST_NUMBER = 1e6
 
 
 class Parameters(NamedTuple):
@@ -107,15 +102,6 @@ class Increment(NamedTuple):
     dt: float
 
 
-class Flow(NamedTuple):
-    """The end of a step with an assumed I: p [Pa], tau_trial - 2 G dt gamma_dot^p [Pa], strength [Pa]."""
-
-    number: float
-    pressure: float
-    shear_stress: float
-    strength: float
-
-
 def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
     """At rest, with the packing at which (1) returns the present pressure."""
     solid_fraction = density / parameters.grain_density
@@ -141,57 +127,14 @@ def update(
     trial_shear_stress = half_norm(trial)
     increment = Increment(compression, solid_fraction, trial_shear_stress, stiffness, dt)
     flow = flow_of_step(increment, state.inertial_number, parameters)
-    if flow.pressure == 0.0:
+    new_pressure = flow.contact
+    if new_pressure == 0.0:
         return isotropic(0.0), State(solid_fraction, 0.0)
-    jamming = solid_fraction / (1.0 + flow.pressure / parameters.bulk_modulus)
+    jamming = solid_fraction / (1.0 + new_pressure / parameters.bulk_modulus)
     if flow.number == 0.0:
-        return assembled_stress(flow.pressure, trial), State(state.jamming_solid_fraction, 0.0)
-    factor = max(0.0, flow.shear_stress) / trial_shear_stress
-    return assembled_stress(flow.pressure, factor * trial), State(jamming, flow.number)
-
-
-@pointwise
-def flow_of_step(increment: Increment, guess: float, parameters: Parameters) -> Flow:
-    """The step whose shear stress is the strength at its own inertial number, from the I of the step before.
-
-    Without pressure where there is no such number, NaN where it is not found.
-    """
-    still = flow_at(0.0, increment, parameters)
-    if still.shear_stress <= still.strength:
-        return still
-    lower, upper = 0.0, math.inf
-    last, flow = still, flow_at(max(guess, 1e-6), increment, parameters)
-    tolerance = TOLERANCE * increment.trial_shear_stress
-    for _ in range(MAXIMUM_ITERATIONS):
-        excess, last_excess = flow.shear_stress - flow.strength, last.shear_stress - last.strength
-        if abs(excess) <= tolerance:
-            return flow
-        if excess > 0.0:
-            lower = flow.number
-        else:
-            upper = flow.number
-        trial = math.inf
-        if last_excess != excess:
-            trial = flow.number + excess * (flow.number - last.number) / (last_excess - excess)
-        stalled = abs(excess) > 0.5 * abs(last_excess)
-        if upper == math.inf:
-            if lower > LARGEST_NUMBER:
-                return Flow(lower, 0.0, 0.0, 0.0)
-            trial = min(max(trial, 2.0 * lower), 100.0 * lower)
-        elif stalled or not lower < trial < upper:
-            trial = 0.5 * (lower + upper)
-        if trial in (lower, upper):
-            break
-        last, flow = flow, flow_at(trial, increment, parameters)
-    return found_or_nan(flow, increment)
-
-
-@pointwise
-def found_or_nan(flow: Flow, increment: Increment) -> Flow:
-    """The last step of a search that did not reach its tolerance, if there is next to nothing left."""
-    if abs(flow.shear_stress - flow.strength) <= LARGEST_ERROR * increment.trial_shear_stress:
-        return flow
-    return Flow(math.nan, math.nan, math.nan, math.nan)
+        return assembled_stress(new_pressure, trial), State(state.jamming_solid_fraction, 0.0)
+    factor = flow.strength / trial_shear_stress
+    return assembled_stress(new_pressure, factor * trial), State(jamming, flow.number)
 
 
 @pointwise
@@ -215,7 +158,10 @@ def flow_at(number: float, increment: Increment, parameters: Parameters) -> Flow
     )
     strength = max(0.0, friction + dilatancy) * y * y
     shear_stress = increment.trial_shear_stress - increment.stiffness * rate_per_root * y
-    return Flow(number, y * y, shear_stress, strength)
+    return Flow(number, y * y, strength, shear_stress - strength)
+
+
+flow_of_step = consistent_flow_of(flow_at, TOLERANCE)
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

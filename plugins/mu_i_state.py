@@ -22,11 +22,9 @@ Energy. Per volume p z/(3 (1 - z)) + tau^2/(2 G) is held. Because of the last te
 elastic cycles through any pressures return what they took. Shear dissipates 2 (S p - psi (p + p z/(3 (1 - z))))
 gamma_dot^p >= 0, by the second term of (7); settling and compaction dissipate too.
 
-A step. I is the unknown. Given I, backward Euler makes (1) with (4) a quadratic in z with one positive root, however
-large the step. The excess of the trial stress over (7) is positive at I = 0 and negative once the trial shear is
-plastic: bracketed, and found by the secant method with bisection. Looser than phi_min, compaction can take the pressure
-faster than any I uses up the shear; then there is no root, and the grains part: p = 0, phi_j = phi. Open points neither
-flow nor dilate, and close where they opened. A root that is not found makes the stress NaN.
+A step. I is the unknown, found in a bracket (`plugins/mu_i/state_step.py`, `consistent_flow.py`). Looser than phi_min,
+compaction can take the pressure faster than any I uses up the shear: then the grains part, p = 0, phi_j = phi. Open
+points neither flow nor dilate, and close where they opened. A root that is not found makes the stress NaN.
 
 Contains: at a = 0 the friction mu(I) at constant phi_j; at chi = 0 and slow shear a law without rate, whose critical
 states are tau = mu_0 p on the line phi = phi_0 (1 + b z)/(1 - z).
@@ -65,15 +63,8 @@ from grainlaw.materials import (
     trace,
 )
 from grainlaw.materials.elementary import exponential
-from grainlaw.plugins.mu_i.friction import friction_of_inertial_number
+from grainlaw.plugins.mu_i.state_step import Increment, flow_of_step, unused_friction
 
-# Of the trial stress.
-TOLERANCE = 1e-11
-# The same, where round-off keeps I from more.
-LARGEST_ERROR = 1e-6
-MAXIMUM_ITERATIONS = 200
-# Beyond it no pressure is left: at 1000 1/s and 15 mm less than 1e-6 Pa.
-LARGEST_NUMBER = 1e6
 # Solid fraction phi_j of the set `paper_dense`.
 DENSE = 0.61
 
@@ -122,39 +113,6 @@ class State(NamedTuple):
         float, StateVariable("1", "elastic strain z_m beyond which compression compacts", output=False)
     ]
     inertial_number: Annotated[float, StateVariable("1", "plastic inertial number I of the last step")]
-
-
-class Increment(NamedTuple):
-    """A step in contact: what is known before I is.
-
-    compression     phi/phi_j - 1
-    reference_strain  z at which G rho is that of before the step
-    consolidation   z_m before the step
-    excess_at_rest  phi_l - phi_s, with the friction before the step
-    shear_per_number  plastic shear over I z
-    trial_shear_stress, stiffness  tau without plastic shear, and what plastic shear takes of it, at the last G [Pa]
-    """
-
-    solid_fraction: float
-    compression: float
-    reference_strain: float
-    consolidation: float
-    excess_at_rest: float
-    shear_per_number: float
-    trial_shear_stress: float
-    stiffness: float
-
-
-class Flow(NamedTuple):
-    """The end of a step with an assumed I: z, the strength S p [Pa], and the trial stress that I leaves over [Pa]."""
-
-    number: float
-    elastic_strain: float
-    strength: float
-    excess: float
-
-
-PARTED, NOT_FOUND = Flow(0.0, 0.0, 0.0, 0.0), Flow(math.nan, math.nan, math.nan, math.nan)
 
 
 def initial_state(stress: SymmetricTensor, density: float, parameters: Parameters) -> State:
@@ -211,7 +169,7 @@ def update(
         2.0 * modulus * shear_per_number,
     )
     flow = flow_of_step(increment, state.inertial_number, parameters)
-    z = flow.elastic_strain
+    z = flow.contact
     jamming = solid_fraction * (1.0 - z)
     compaction = jamming / state.jamming_solid_fraction - 1.0
     consolidation = max(z, state.consolidation_strain + compaction / parameters.compaction)
@@ -220,87 +178,6 @@ def update(
     elastic, yielding = 2.0 * z / (z + reference_strain), flow.strength / max(increment.trial_shear_stress, 1e-300)
     factor = elastic if flow.number == 0.0 else yielding
     return assembled_stress(parameters.stiffness * z * z, factor * trial), State(jamming, consolidation, flow.number)
-
-
-@pointwise
-def unused_friction(shear_stress: float, mean_pressure: float, number: float, parameters: Parameters) -> float:
-    """<1 - tau/(mu p)> of (5)."""
-    strength = mean_pressure * friction(number, parameters)
-    return 1.0 - shear_stress / strength if shear_stress < strength else 0.0
-
-
-@pointwise
-def friction(number: float, parameters: Parameters) -> float:
-    """mu(I) of (2)."""
-    return friction_of_inertial_number(
-        number, parameters.static_friction, parameters.dynamic_friction, parameters.inertial_number_constant
-    )
-
-
-@pointwise
-def flow_of_step(increment: Increment, guess: float, parameters: Parameters) -> Flow:
-    """The step whose shear stress is the strength at its own inertial number, from the I of the step before.
-
-    Without pressure where there is no such number, NaN where it is not found.
-    """
-    still = flow_at(0.0, increment, parameters)
-    if still.excess <= 0.0:
-        return still
-    lower, upper = 0.0, math.inf
-    last, flow = still, flow_at(max(guess, 1e-6), increment, parameters)
-    tolerance = TOLERANCE * increment.trial_shear_stress
-    for _ in range(MAXIMUM_ITERATIONS):
-        if abs(flow.excess) <= tolerance:
-            return flow
-        if flow.excess > 0.0:
-            lower = flow.number
-        else:
-            upper = flow.number
-        if upper == math.inf and lower > LARGEST_NUMBER:
-            return PARTED
-        trial = 0.5 * (lower + upper) if upper < math.inf else 10.0 * lower
-        if abs(flow.excess) < 0.5 * abs(last.excess):
-            secant = flow.number + flow.excess * (flow.number - last.number) / (last.excess - flow.excess)
-            trial = secant if lower < secant < upper else trial
-        if trial in (lower, upper):
-            break
-        last, flow = flow, flow_at(trial, increment, parameters)
-    return flow if abs(flow.excess) <= LARGEST_ERROR * increment.trial_shear_stress else NOT_FOUND
-
-
-@pointwise
-def flow_at(number: float, increment: Increment, parameters: Parameters) -> Flow:
-    """The end of the step if its inertial number is this one.
-
-    With phi_j = phi (1 - z) at the end, (4) is  A z^2 + B z - C = 0,  A, C >= 0. Its left side grows with z beyond its
-    root: settling and first compression act at the end if it is negative where they begin.
-    """
-    phi, b, end = increment.solid_fraction, parameters.compaction, increment.consolidation
-    steady = max(
-        parameters.critical_solid_fraction - parameters.dilation_slope * number, parameters.loosest_solid_fraction
-    )
-    # phi_j - phi_s (1 + b z) = dense - slope z.
-    dense, slope = phi - steady, phi + b * steady
-    loosening = 2.0 * parameters.dilatancy_coefficient * number * increment.shear_per_number
-    A, B, C = loosening * slope, 1.0 + increment.compression - loosening * dense, increment.compression
-    too_dense, slope_at_rest = dense - increment.excess_at_rest, slope + b * increment.excess_at_rest
-    onset = max(0.0, too_dense)
-    if slope_at_rest * (C * slope_at_rest - B * onset - b * max(0.0, onset - slope_at_rest * end)) > A * onset * onset:
-        settling = parameters.settling_rate * increment.shear_per_number
-        A, B = A + settling * slope_at_rest, B - settling * too_dense
-    if C - end * (B + end * A) > 0.0:
-        B, C = B + b, C + b * end
-    root = math.sqrt(B * B + 4.0 * A * C)
-    # Of the two forms of the root, the one that subtracts nothing.
-    z = (root - B) / (2.0 * A) if B < 0.0 else 2.0 * C / (B + root)
-    psi = parameters.dilatancy_coefficient * (dense - slope * z)
-    mu = friction(number, parameters)
-    strength_over_z = (
-        max(mu + (1.0 - parameters.hidden_dilatancy) * psi, (1.0 + z) * psi, 0.0) * parameters.stiffness * z
-    )
-    # The last term of (6) multiplies the shear stress by 2 z/(z + reference_strain), to second order.
-    used = increment.stiffness * number * z + 0.5 * (z + increment.reference_strain) * strength_over_z
-    return Flow(number, z, strength_over_z * z, increment.trial_shear_stress - used)
 
 
 def sound_speed(stress: SymmetricTensor, density: float, state: State, parameters: Parameters) -> float:

@@ -199,3 +199,22 @@ def check(plugin: Path):
         text=True,
         check=False,
     )
+
+
+def test_parameter_that_only_a_closure_of_another_file_names_is_used(tmp_path):
+    """Nor is it read along the paths of the check: the branch is not taken there."""
+    (tmp_path / "family.py").write_text(
+        "from grainlaw.materials import pointwise\n\n\n"
+        "def strength_of(rare):\n"
+        "    @pointwise\n"
+        "    def strength(p, parameters):\n"
+        "        return rare(parameters) if p > 1e30 else 0.6 * p\n\n"
+        "    return strength\n\n\n"
+        "@pointwise\n"
+        "def rare(parameters):\n"
+        "    return parameters.friction_coefficient\n\n\n"
+        "strength = strength_of(rare)\n"
+    )
+    text = SOUND_LAW.replace("import math\n", "import math\n\nfrom family import strength as strength_of_grains\n")
+    used = "    strength = strength_of_grains(p, parameters) + cohesion if p > 0.0 else 0.0\n"
+    assert finished(Subject(law_of(text.replace(STRENGTH, used), tmp_path), "weak", QUICK)).verdict == "pass"

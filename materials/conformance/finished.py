@@ -48,11 +48,22 @@ def unused_parameters(subject: Subject) -> list[str]:
 
 
 def _named(law: Law) -> Iterator[str]:
-    """What the functions of the law's file may ask for as attributes."""
-    statements = [getattr(law, name) for name in _STATEMENTS]
-    for function in (*vars(getmodule(law.update)).values(), law.update, law.initial_state):
-        if isinstance(function, FunctionType) and function not in statements:
+    """What the functions of the law's file, and what they call or close over, may ask for as attributes."""
+    pending: list[object] = [*vars(getmodule(law.update)).values(), law.update, law.initial_state]
+    seen = {getattr(law, name) for name in _STATEMENTS}
+    while pending:
+        function = pending.pop()
+        if isinstance(function, FunctionType) and function not in seen:
+            seen.add(function)
             yield from _names(function.__code__)
+            pending += _called(function)
+
+
+def _called(function: FunctionType) -> list[object]:
+    """The functions of laws and their families that a function names or closes over."""
+    reached = [function.__globals__.get(name) for name in _names(function.__code__)]
+    reached += [cell.cell_contents for cell in function.__closure__ or ()]
+    return [one for one in reached if not str(getattr(one, "__module__", "")).startswith("grainlaw.materials")]
 
 
 def _names(code: CodeType) -> Iterator[str]:

@@ -56,15 +56,15 @@ class Bench:
         return self._judged(law.judged.title, scene, column, ensemble, law.judged.law)
 
     def judge_variant(self, law: FittedLaw, reference: ReferenceSet, ensemble: Ensemble, variant: Variant) -> Judgement:
-        """The column of a law with one thing changed, against the grains on the floor that the variant names."""
+        """The column of a law with one thing changed, against the grains that the variant names."""
+        try:
+            ensemble = reference.ensemble(ensemble.case.replace(ensemble.floor, variant.grains))
+        except InputError as error:
+            return Judgement(variant.name, ensemble, None, None, str(error), variant)
         column = column_of(ensemble)
         cell_size = self.cell_size * variant.cell_factor
         scene = varied(column_scene(column, law.judged.law, law.parameters, cell_size), law.judged.law, variant)
-        try:
-            judged_by = reference.ensemble(ensemble.case.replace(ensemble.floor, variant.floor))
-        except InputError as error:
-            return Judgement(variant.name, ensemble, None, None, str(error), variant)
-        return self._judged(variant.name, scene, column, judged_by, law.judged.law, variant)
+        return self._judged(variant.name, scene, column, ensemble, law.judged.law, variant)
 
     def _judged(
         self,

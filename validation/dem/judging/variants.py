@@ -10,12 +10,12 @@ from grainlaw.validation.grains.distance import Verdict
 
 @dataclass(frozen=True)
 class Variant:
-    """The column of the reference law with one thing changed.
+    """The column of a law with one thing changed.
 
     factors     by which parameters of the law are multiplied, by name
     changes     values of the scene by dotted key
     cell_factor by which the cell size is multiplied
-    floor       of the grains that it is judged against
+    grains      that it is judged against, whose column it is: their floor, and what else is different about them
     law         whose column it is
     aspect_ratio of the column
     noticed     of a mistake: the verdict from which on it counts as noticed
@@ -26,7 +26,7 @@ class Variant:
     factors: Mapping[str, float] = field(default_factory=dict)
     changes: Mapping[str, Any] = field(default_factory=dict)
     cell_factor: float = 1.0
-    floor: str = "glued"
+    grains: str = "glued"
     law: str = "mu_i_lc"
     aspect_ratio: float = 2.0
     noticed: Verdict = Verdict.DIFFERS
@@ -34,6 +34,7 @@ class Variant:
 
 FRICTIONS = ("static_friction", "dynamic_friction")
 NO_SLIP = {"boundary.bottom": "no_slip"}
+ASPECT_RATIOS = (1.0, 2.0, 4.0, 6.0)
 
 
 def _of_delayed_dilatancy(name: str, says: str, aspect_ratio: float, **changes: Any) -> Variant:
@@ -49,24 +50,20 @@ def _of_state(name: str, says: str, aspect_ratio: float, **changes: Any) -> Vari
 CONTROLS = (
     Variant("friction 30 % too low", "a wrong material", dict.fromkeys(FRICTIONS, 0.7)),
     Variant("gravity 12 m/s2", "a wrong clock", changes={"gravity": [0.0, -12.0]}),
-    Variant("flat floor", "the right law against grains on a floor on which they roll", floor="flat"),
+    Variant("flat floor", "the right law against grains on a floor on which they roll", grains="flat"),
     *(
         _of_delayed_dilatancy(name, says, 2.0, noticed=Verdict.ACCEPTABLE, **mistake)
         for name, says, mistake in (
             ("friction 30 % too low", "a wrong material", {"factors": dict.fromkeys(FRICTIONS, 0.7)}),
             ("gravity 12 m/s2", "a wrong clock", {"changes": {"gravity": [0.0, -12.0]}}),
-            ("flat floor", "a wrong floor", {"floor": "flat"}),
+            ("flat floor", "a wrong floor", {"grains": "flat"}),
         )
     ),
-    *(
-        _of_state(name, says, 2.0, noticed=Verdict.ACCEPTABLE, **mistake)
-        for name, says, mistake in (
-            ("friction 30 % too low", "a wrong material", {"factors": dict.fromkeys(FRICTIONS, 0.7)}),
-            ("gravity 12 m/s2", "a wrong clock", {"changes": {"gravity": [0.0, -12.0]}}),
-            ("no dilatancy", "strength and volume without packing", {"factors": {"dilatancy_coefficient": 0.0}}),
-            ("all dilatancy in the friction", "N = 0", {"factors": {"hidden_dilatancy": 0.0}}),
-        )
-    ),
+    _of_state("friction 30 % too low", "a wrong material", 2.0, factors=dict.fromkeys(FRICTIONS, 0.7)),
+    _of_state("gravity 12 m/s2", "a wrong clock", 2.0, noticed=Verdict.ACCEPTABLE, changes={"gravity": [0.0, -12.0]}),
+    _of_state("no dilatancy", "strength and volume without packing", 2.0, factors={"dilatancy_coefficient": 0.0}),
+    _of_state("all dilatancy in the friction", "N = 0", 2.0, factors={"hidden_dilatancy": 0.0}),
+    _of_state("a = 6, points crowd", "no projection", 6.0, changes={"transfer.volume_projection": False}),
 )
 
 LIMITS = (
@@ -99,10 +96,16 @@ LIMITS = (
     _of_delayed_dilatancy("a = 6, twice the cell", "resolution", 6.0, cell_factor=2.0),
     _of_delayed_dilatancy("a = 6, half the cell", "resolution", 6.0, cell_factor=0.5),
     _of_delayed_dilatancy("a = 6, no slip at the floor", "floor", 6.0, changes=NO_SLIP),
-    _of_state("a = 2, as judged", "the law itself, for comparison", 2.0),
-    _of_state("a = 2, half the cell", "resolution", 2.0, cell_factor=0.5),
     _of_state("a = 2, twice the cell", "resolution", 2.0, cell_factor=2.0),
-    _of_state("a = 6, as judged", "the law itself, for comparison", 6.0),
+    *(_of_state(f"a = {ratio:g}, half the cell", "resolution", ratio, cell_factor=0.5) for ratio in ASPECT_RATIOS),
+    *(
+        _of_state(f"a = {ratio:g}, flat floor", "grains that roll on the floor", ratio, grains="flat")
+        for ratio in ASPECT_RATIOS
+    ),
+    # The modulus of a packing grows as that of its grains.
+    _of_state("a = 2, stiff grains", "1e9 Pa", 2.0, grains="glued-stiff", factors={"stiffness": 10.0}),
+    _of_state("a = 2, deep slot", "8 diameters for 4", 2.0, grains="glued-deep"),
+    _of_state("a = 2, fine grains", "8 to 12 mm", 2.0, grains="glued-fine", factors={"grain_diameter": 10.0 / 15.0}),
 )
 
 
@@ -116,6 +119,6 @@ def varied(scene: dict[str, Any], law: str, variant: Variant) -> dict[str, Any]:
         *parents, last = key.split(".")
         table = scene
         for parent in parents:
-            table = table[parent]
+            table = table.setdefault(parent, {})
         table[last] = value
     return scene
