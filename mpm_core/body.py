@@ -180,9 +180,9 @@ class Body:
         """Choose transfers and generate the stress pass. Raises InputError if the law does not compile."""
         self._transfers = transfers(self.space, basis, self.is_loose, self.precision)
         law = pointwise_law(self.law, self._of_law)
-        self._stress_pass = make_stress_pass(self.space, law, self._keeps_shear_strain, self.precision)
+        self._stress_pass = make_stress_pass(self.space, law, self.precision)
         no_points = self.storage, 0, 1.0, self._law_parameters
-        explained(self.law, self._stress_pass, *no_points, 0.0, 0.0, 1, self.stress_reports[:0])
+        explained(self.law, self._stress_pass, *no_points, 0.0, 0.0, False, 1, self.stress_reports[:0])
 
     @cached_property
     def _law_parameters(self) -> tuple[Any, ...]:
@@ -369,8 +369,9 @@ class Body:
 
         `coupled_time` is the time [s] for which the volumes of loose grains are coupled in this step.
         """
-        coupled_time, points = coupled_time if self.is_loose else 0.0, (self.storage, self.awake, self.point_mass)
-        self._stress_pass(*points, self._law_parameters, dt, coupled_time, threads, self.stress_reports)
+        times = dt, coupled_time if self.is_loose else 0.0
+        points = self.storage, self.awake, self.point_mass, self._law_parameters
+        self._stress_pass(*points, *times, self._keeps_shear_strain, threads, self.stress_reports)
 
     def state(self, name: str) -> NDArray[np.float64]:
         """A state variable of all points, in their present order. Raises InputError for an unknown name."""

@@ -124,10 +124,8 @@ def remainder_in_single(storage):  # type: ignore[no-untyped-def]
     return storage[DENSITY_REMAINDER]
 
 
-def make_accumulate_shear_strain(space: Space, row: int | None, precision: str, mark: str) -> Callable[..., Any]:
-    """The loop over points that brings their shear strain forward, in this row; without one, nothing."""
-    if row is None:
-        return no_shear_strain
+def make_accumulate_shear_strain(space: Space, row: int, precision: str, mark: str) -> Callable[..., Any]:
+    """The loop over points that brings their shear strain forward, which stands in this row."""
     motion = kinematics(space, precision).motion
 
     @adaptable
@@ -138,11 +136,6 @@ def make_accumulate_shear_strain(space: Space, row: int | None, precision: str, 
             shear_strain[p] += dt * shear_strain_rate(motion(rows, p))
 
     return in_precision(accumulate_shear_strain, precision)
-
-
-@register_jitable
-def no_shear_strain(rows, first, last, dt):  # type: ignore[no-untyped-def]
-    """Do nothing."""
 
 
 def make_work_done(space: Space, precision: str) -> Callable[..., Any]:
@@ -184,20 +177,21 @@ def make_work_done(space: Space, precision: str) -> Callable[..., Any]:
 
 
 @cache
-def make_stress_pass(space: Space, law: PointwiseLaw, keeps_shear_strain: bool, precision: str) -> Callable[..., Any]:
+def make_stress_pass(space: Space, law: PointwiseLaw, precision: str) -> Callable[..., Any]:
     """The stress pass of a law; it takes the law's parameters as a plain tuple. The precision is that of the points.
 
-    It couples the volumes of the points for a time `coupled_time` [s], zero for not in this step. Reports per block of
-    points: the largest signal speed c + |v| [m/s], the work of the stress on the strain [J/m], the largest volumetric
-    strain increment of the motion, NaN where anything is not finite, and the largest viscosity over density [m2/s].
+    It couples the volumes of the points for a time `coupled_time` [s], zero for not in this step. The row behind the
+    law's state is the shear strain where `keeps_shear_strain`; else it may not exist. Reports per block of points: the
+    largest signal speed c + |v| [m/s], the work of the stress on the strain [J/m], the largest volumetric strain
+    increment of the motion, NaN where anything is not finite, and the largest viscosity over density [m2/s].
     """
-    mark, number = f"{space.name}_{law.mark}_{CORE_MARK}_{keeps_shear_strain:d}_{precision}", PRECISIONS[precision]
+    mark, number = f"{space.name}_{law.mark}_{CORE_MARK}_{precision}", PRECISIONS[precision]
     apply_law, find_stiffness = make_apply_law(space, law, mark), make_find_stiffness(space, law, mark)
     largest_signal_speed = make_largest_signal_speed(space, law, mark)
     largest_diffusivity = make_largest_diffusivity(space, law, mark)
     after_state = layout_of(space).first_state + len(law.state._fields)
-    all_rows = (0.0,) * (after_state + keeps_shear_strain)
-    accumulate = make_accumulate_shear_strain(space, after_state if keeps_shear_strain else None, precision, mark)
+    all_rows = (0.0,) * (after_state + 1)
+    accumulate = make_accumulate_shear_strain(space, after_state, precision, mark)
     density_remainder = remainder_in_single if precision == "single" else no_remainder
     forward, couple = make_bring_forward(space, precision), make_couple_volumes(space, precision)
     work_done = make_work_done(space, precision)
@@ -205,7 +199,7 @@ def make_stress_pass(space: Space, law: PointwiseLaw, keeps_shear_strain: bool, 
     @njit(parallel=True, error_model="numpy", cache=True)
     @named(mark)
     def stress_pass(  # type: ignore[no-untyped-def]
-        storage, count, point_mass, parameters, dt, coupled_time, threads, reports
+        storage, count, point_mass, parameters, dt, coupled_time, keeps_shear_strain, threads, reports
     ):
         rows, ranges = rows_of(storage, all_rows), chunk_ranges(reports.shape[0], threads)
         for thread in prange(threads_of(ranges)):
@@ -220,7 +214,8 @@ def make_stress_pass(space: Space, law: PointwiseLaw, keeps_shear_strain: bool, 
                     if coupled_time > 0.0:
                         find_stiffness(rows, first, last, parameters, stiffness)
                         couple(rows, first, last, number(coupled_time), stiffness, coupling)
-                    accumulate(rows, first, last, step)
+                    if keeps_shear_strain:
+                        accumulate(rows, first, last, step)
                     increment = forward(rows, first, last, step, coupling, buffers, density_remainder(storage))
                     apply_law(rows, first, last, coupling, parameters, dt)
                     speed = largest_signal_speed(rows, first, last, parameters)
