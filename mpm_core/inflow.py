@@ -13,8 +13,8 @@ import warnings
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from grainlaw.materials.errors import InputWarning
 from grainlaw.mpm_core.body import Body
@@ -107,7 +107,7 @@ class Inflow:
         for body in bodies:
             found = frame @ body.positions / scale
             near.append(found[:, ((found > lowest) & (found < highest)).all(axis=0)].T)
-        distances, _ = cKDTree(np.concatenate(near)).query(sought.T, p=np.inf, distance_upper_bound=ROOM)
+        distances, _ = scipy.spatial.cKDTree(np.concatenate(near)).query(sought.T, p=np.inf, distance_upper_bound=ROOM)
         return np.isfinite(distances)
 
     def _wait(self, parts: NDArray[np.int64], time: float) -> None:

@@ -5,10 +5,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation, Slerp
 
 Floats = NDArray[np.float64]
+
+
+def turn_about(vector: Floats) -> "scipy.spatial.transform.Rotation":
+    """The rotation about a vector [rad] by its length."""
+    return scipy.spatial.transform.Rotation.from_rotvec(vector)
 
 
 @dataclass
@@ -30,7 +35,7 @@ class Pose:
         """Move on for a time [s] at the present velocities."""
         self.position = self.position + dt * self.velocity
         if self.spin.any():
-            self.rotation = Rotation.from_rotvec(dt * self.spin).as_matrix() @ self.rotation
+            self.rotation = turn_about(dt * self.spin).as_matrix() @ self.rotation
 
 
 def in_3d(vector: Sequence[float] | Floats | None) -> Floats:
@@ -108,7 +113,7 @@ class Steady(Motion):
         if not self.pose.spin.any():
             self.pose.velocity = self.frame_velocity
             return
-        half = Rotation.from_rotvec(0.5 * dt * self.pose.spin).apply(self.pose.position - self.center)
+        half = turn_about(0.5 * dt * self.pose.spin).apply(self.pose.position - self.center)
         self.pose.velocity = self.frame_velocity + np.cross(self.pose.spin, half)
 
     def after(self, dt: float, impulse: Floats, moment: Floats) -> None:
@@ -117,7 +122,7 @@ class Steady(Motion):
             self.pose.position = self.pose.position + dt * self.frame_velocity
             self.center = self.center + dt * self.frame_velocity
             return
-        turn = Rotation.from_rotvec(dt * self.pose.spin)
+        turn = turn_about(dt * self.pose.spin)
         arm = turn.apply(self.pose.position - self.center)
         self.center = self.center + dt * self.frame_velocity
         self.pose.position = self.center + arm
@@ -127,13 +132,13 @@ class Steady(Motion):
 class Along(Motion):
     """Through a table of poses: positions linear in time between them, rotations at a constant spin."""
 
-    def __init__(self, times: Floats, positions: Floats, rotations: Rotation) -> None:
+    def __init__(self, times: Floats, positions: Floats, rotations: "scipy.spatial.transform.Rotation") -> None:
         self.times, self.positions, self.rotations = times, positions, rotations
-        self.turns = Slerp(times, rotations)
+        self.turns = scipy.spatial.transform.Slerp(times, rotations)
         self.time = float(times[0])
         super().__init__(at_rest(positions[0], rotations[0].as_matrix()))
 
-    def _at(self, time: float) -> tuple[Floats, Rotation]:
+    def _at(self, time: float) -> tuple[Floats, "scipy.spatial.transform.Rotation"]:
         inside = min(max(time, float(self.times[0])), float(self.times[-1]))
         position = np.array([np.interp(inside, self.times, along) for along in self.positions.T])
         return position, self.turns(inside)

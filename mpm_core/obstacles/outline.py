@@ -5,8 +5,8 @@ from itertools import combinations, product
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 from shapely import Polygon, box, get_parts
 
 from grainlaw.mpm_core.obstacles.obstacle import Obstacle
@@ -74,7 +74,7 @@ def _flat(corners: Floats) -> Outline:
 
 def _hull(points: Floats) -> Outline:
     """The triangles of a convex solid, their corners in the order that makes normals point outwards."""
-    hull = ConvexHull(points)
+    hull = scipy.spatial.ConvexHull(points)
     faces = []
     for simplex, equation in zip(hull.simplices.astype(np.int64), hull.equations, strict=True):
         a, b, c = points[simplex]

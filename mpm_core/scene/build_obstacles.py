@@ -4,8 +4,8 @@ import warnings
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from grainlaw.materials import InputError
 from grainlaw.materials.errors import InputWarning
@@ -65,7 +65,8 @@ def _motion(scene: Scene, section: ObstacleSection, found: Placed) -> Motion:
 def _along(table: MotionSection, found: Placed) -> Motion:
     ways = np.array([in_3d(way) for way in table.displacement or ()])
     angles = np.array(table.angle or [0.0] * len(ways))
-    turns = Rotation.from_rotvec(np.outer(angles, [0.0, 0.0, 1.0])) * Rotation.from_matrix(found.rotation)
+    rotation = scipy.spatial.transform.Rotation
+    turns = rotation.from_rotvec(np.outer(angles, [0.0, 0.0, 1.0])) * rotation.from_matrix(found.rotation)
     times = np.array(table.time or ())
     along = Along(times, found.position + ways, turns)
     along.before(0.0, float(times[1]))

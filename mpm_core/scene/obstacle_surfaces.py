@@ -4,8 +4,8 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from grainlaw.mpm_core.obstacles import surface as surfaces
 from grainlaw.mpm_core.obstacles.motion import in_3d
@@ -126,7 +126,8 @@ def _turned_up(direction: Floats) -> Floats:
     if np.linalg.norm(axis) < 1e-12:
         return np.eye(3) if cosine > 0.0 else np.diag([1.0, -1.0, -1.0])
     angle = np.arctan2(np.linalg.norm(axis), cosine)
-    return np.asarray(Rotation.from_rotvec(angle * axis / np.linalg.norm(axis)).as_matrix())
+    turn = scipy.spatial.transform.Rotation.from_rotvec(angle * axis / np.linalg.norm(axis))
+    return np.asarray(turn.as_matrix())
 
 
 def _box(shape: Box) -> Placed:
