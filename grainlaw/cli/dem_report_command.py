@@ -30,7 +30,7 @@ def judge_by_grains(out: Path | None, quick: bool) -> None:
     print_table(summary_table(report))
     print_table(variant_table("Negative controls", "Each has to be noticed.", report.controls))
     command = f"grainlaw validate {SUITE}{' --quick' if quick else ''}"
-    for path in write_report(folder, report, reference.shear, command):
+    for path in write_report(folder, report, reference.test("shear"), command):
         typer.echo(f"  {path}")
     if report.missed:
         raise typer.Exit(1)

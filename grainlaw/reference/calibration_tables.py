@@ -25,6 +25,10 @@ def _rows(experiment: Experiment) -> str:
     driving = [
         [code(name), "drives the test", found.unit, "", found.doc] for name, found in experiment.controls.items()
     ]
+    driving += [
+        [code(name), "what it drives, over time", found.unit, "", found.doc]
+        for name, found in experiment.follows.items()
+    ]
     settings = [
         [code(name), "setting", found.unit, f"{defaults[name]:g}", found.doc]
         for name, found in declared_fields(experiment.settings, Parameter).items()

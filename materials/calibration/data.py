@@ -13,7 +13,7 @@ test each. One column drives the test (`experiments`), the others were measured 
 import csv
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grainlaw.materials import InputError, Law
-from grainlaw.materials.calibration.experiments import EXPERIMENTS, Experiment, get_experiment
+from grainlaw.materials.calibration.experiments import EXPERIMENTS, Control, Experiment, get_experiment
 from grainlaw.materials.calibration.quantities import QUANTITIES
 from grainlaw.materials.errors import nearest_name
 
@@ -52,6 +52,7 @@ class DataSet:
     control     name of the column that drives the test
     abscissa    its values, shape (rows,)
     statements  settings of the test and parameters of the law that the file states, by name
+    followed    if the control is time, the driven values of the law at these times, shape (rows,)
     """
 
     label: str
@@ -60,10 +61,15 @@ class DataSet:
     abscissa: Array
     statements: dict[str, float]
     measured: tuple[Measured, ...]
+    followed: Array | None = None
 
     def driven(self, abscissa: Array) -> Array:
-        """Values of the column that drives the test in the law's own terms."""
-        return self.experiment.controls[self.control].driven(abscissa)
+        """Values of the column that drives the test in the law's own terms; times with what is followed, (rows, 2)."""
+        driven = self.experiment.controls[self.control].driven(abscissa)
+        if self.followed is None:
+            return driven
+        over_time = np.interp(abscissa, [0.0, *self.abscissa], [0.0, *self.followed])
+        return np.column_stack([driven, over_time])
 
 
 @dataclass
@@ -152,12 +158,18 @@ def _data_set(
             raise table.fault(
                 f"'{name}' is neither a setting of {experiment.name} nor of {law.name}; {nearest_name(name, known)}"
             )
-    control = _control(table, experiment)
-    measured = _measured(table, experiment, control, rows, grouping)
-    abscissa = _column(table, control, rows)
-    if np.any(np.isnan(abscissa)):
-        raise table.fault(f"empty cell in {control}", rows[int(np.argmax(np.isnan(abscissa)))][0])
-    return DataSet(label, experiment, control, abscissa, statements, measured)
+    control = _control(table, experiment, experiment.controls)
+    abscissa = _filled_column(table, control, rows)
+    if not experiment.follows:
+        measured = _measured(table, experiment, [control, *grouping], rows)
+        return DataSet(label, experiment, control, abscissa, statements, measured)
+    name = _control(table, experiment, experiment.follows)
+    measured = _measured(table, experiment, [control, name, *grouping], rows)
+    falls = ~(np.diff(abscissa, prepend=0.0) > 0.0)
+    if np.any(falls):
+        raise table.fault(f"{control} must rise from row to row, from above 0", rows[int(np.argmax(falls))][0])
+    followed = experiment.follows[name].driven(_filled_column(table, name, rows))
+    return DataSet(label, experiment, control, abscissa, statements, measured, followed)
 
 
 def _stated_number(table: _Table, name: str, text: str) -> float:
@@ -167,24 +179,23 @@ def _stated_number(table: _Table, name: str, text: str) -> float:
         raise table.fault(f"{name} = {text}: '{text}' is not a number (SI units, no unit behind it)") from None
 
 
-def _control(table: _Table, experiment: Experiment) -> str:
-    present = [name for name in table.names if name in experiment.controls]
+def _control(table: _Table, experiment: Experiment, choices: Mapping[str, Control]) -> str:
+    present = [name for name in table.names if name in choices]
     if len(present) != 1:
-        wanted = " or ".join(experiment.controls)
-        raise table.fault(f"{experiment.name} needs one column {wanted}, not {len(present)}")
-    _check_unit(table, present[0], experiment.controls[present[0]].unit)
+        raise table.fault(f"{experiment.name} needs one column {' or '.join(choices)}, not {len(present)}")
+    _check_unit(table, present[0], choices[present[0]].unit)
     return present[0]
 
 
 def _measured(
-    table: _Table, experiment: Experiment, control: str, rows: list[tuple[int, Cells]], grouping: list[str]
+    table: _Table, experiment: Experiment, others: Sequence[str], rows: list[tuple[int, Cells]]
 ) -> tuple[Measured, ...]:
-    names = [name for name in table.names if name not in {control, *grouping}]
+    names = [name for name in table.names if name not in others]
     measured = [name for name in names if not name.startswith(ERROR_PREFIX)]
     for name in names:
         plain = name.removeprefix(ERROR_PREFIX)
         if plain not in QUANTITIES:
-            choices = {*QUANTITIES, *experiment.controls, *experiment.settings._fields}
+            choices = {*QUANTITIES, *experiment.controls, *experiment.follows, *experiment.settings._fields}
             raise table.fault(f"unknown column '{name}'; {nearest_name(plain, choices)}")
         if plain not in measured:
             raise table.fault(f"column '{name}' without a column '{plain}'")
@@ -210,6 +221,13 @@ def _check_unit(table: _Table, name: str, unit: str) -> None:
     if stated != unit and not (stated is None and unit == "1"):
         given = "no unit" if stated is None else f"the unit [{stated}]"
         raise table.fault(f"column '{name}' has {given}; allowed: [{unit}]")
+
+
+def _filled_column(table: _Table, name: str, rows: list[tuple[int, Cells]]) -> Array:
+    values = _column(table, name, rows)
+    if np.any(np.isnan(values)):
+        raise table.fault(f"empty cell in {name}", rows[int(np.argmax(np.isnan(values)))][0])
+    return values
 
 
 def _column(table: _Table, name: str, rows: Iterable[tuple[int, Cells]]) -> Array:

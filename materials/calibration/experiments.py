@@ -2,12 +2,13 @@
 
 The element tests with a driven strain follow the strains of the data from row to row, so that unloading is a matter of
 the data. `steady-shear` holds the normal stress on the plane of shear and shears at each inertial number until nothing
-changes any more, as a plane shear cell does; `shear-start` follows the strains of the data at one inertial number.
+changes any more, as a plane shear cell does; `shear-start` follows the strains of the data at one inertial number;
+`shear-history` follows strains over time, so that the rate, too, is a matter of the data.
 """
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -82,6 +83,20 @@ class ShearStartSettings(NamedTuple):
     strain_step: StrainStep = 2e-4
 
 
+class ShearHistorySettings(NamedTuple):
+    """Settings of shear at held normal stress, with the strain of the data over time."""
+
+    held_normal_stress: Annotated[
+        float, Parameter("Pa", "held compressive stress on the plane of shear", "(0, inf)")
+    ] = 1e3
+    density: InitialDensity = 0.0
+    grain_density: GrainDensity = 2450.0
+    strain_step: StrainStep = 5e-4
+
+
+AnyShearSettings = SteadyShearSettings | ShearStartSettings | ShearHistorySettings
+
+
 @dataclass(frozen=True)
 class Control:
     """A column that drives a test: SI unit, one-line doc, and the driven quantity of the law that belongs to it."""
@@ -98,6 +113,8 @@ class Experiment:
     controls  the columns that may drive it, by name; a data file has one of them
     settings  NamedTuple class whose fields are annotated with `Parameter`, all with defaults
     history   (specimen, settings, driven values of shape (rows,)) -> the start and the point at each value
+    follows   if the control is time, the columns of which a data file has one more, by name: what is driven over time;
+              the history is then given times and values, shape (rows, 2)
     """
 
     name: str
@@ -105,6 +122,7 @@ class Experiment:
     controls: Mapping[str, Control]
     settings: type[Any]
     history: Callable[[Specimen, Any, Array], ElementResult]
+    follows: Mapping[str, Control] = field(default_factory=dict)
 
 
 def _as_it_is(values: Array) -> Array:
@@ -123,6 +141,7 @@ SHEARED = {
     "engineering_shear_strain": Control("1", "gamma = 2 eps_xy", lambda strain: 0.5 * strain),
     "shear_strain": Control("1", "tensor component eps_xy", _as_it_is),
 }
+TIMED = {"time": Control("s", "time since the start, rising from row to row", _as_it_is)}
 # The same halving as `own_inertial_number_constant`: gamma_dot is half of the engineering rate.
 NUMBERED = {
     "engineering_inertial_number": Control(
@@ -159,7 +178,7 @@ def _strained(name: str, controls: Mapping[str, Control]) -> Experiment:
 
 def steady_shear(specimen: Specimen, settings: SteadyShearSettings, numbers: Array) -> ElementResult:
     """The steady state at each inertial number, one after the other. Raises SimulationError where it is not steady."""
-    start, unit_number = _pressed(specimen, settings)
+    start, unit_number = _pressed(specimen, settings), _number_of_unit_rate(settings)
     half = math.ceil(0.5 * settings.strain_to_steady / settings.strain_step)
     points = [start]
     for number in numbers:
@@ -173,7 +192,7 @@ def steady_shear(specimen: Specimen, settings: SteadyShearSettings, numbers: Arr
 
 def shear_start(specimen: Specimen, settings: ShearStartSettings, strains: Array) -> ElementResult:
     """The point at each strain, sheared from an isotropic state at one inertial number."""
-    start, unit_number = _pressed(specimen, settings)
+    start, unit_number = _pressed(specimen, settings), _number_of_unit_rate(settings)
     rate = settings.held_inertial_number / unit_number
     changes = np.diff(strains, prepend=0.0)
     substeps = max(1, math.ceil(float(np.max(np.abs(changes))) / settings.strain_step))
@@ -183,15 +202,35 @@ def shear_start(specimen: Specimen, settings: ShearStartSettings, strains: Array
     return ElementResult(specimen, "shear-start", settings, path.steps, points)
 
 
-def _pressed(specimen: Specimen, settings: SteadyShearSettings | ShearStartSettings) -> tuple[Point, float]:
-    """The isotropic point at the held normal stress, and the inertial number of the unit rate there."""
+def shear_history(specimen: Specimen, settings: ShearHistorySettings, driven: Array) -> ElementResult:
+    """The point at each time, sheared from an isotropic state along strains over time, (rows, 2)."""
+    points = [_pressed(specimen, settings)]
+    steps = 0
+    for duration, change in np.diff(driven, axis=0, prepend=np.zeros((1, 2))).tolist():
+        if duration == 0.0:
+            points.append(points[-1])
+            continue
+        count = max(1, math.ceil(abs(change) / settings.strain_step))
+        path = _at_normal_stress(settings, duration / count, np.full(count, change / duration))
+        points += follow_path(specimen, path, points[-1], count)
+        steps += count
+    points = [point._replace(time=time) for point, time in zip(points, [0.0, *driven[:, 0].tolist()], strict=True)]
+    return ElementResult(specimen, "shear-history", settings, steps, tuple(points))
+
+
+def _pressed(specimen: Specimen, settings: AnyShearSettings) -> Point:
+    """The isotropic point at the held normal stress."""
     stress = isotropic(-settings.held_normal_stress)
     density = specimen.density(settings.held_normal_stress, settings.density)
-    start = point_at_rest(stress, density, specimen.law.initial_state(stress, density, specimen.parameters))
-    return start, inertial_number(1.0, settings.held_normal_stress, settings.grain_diameter, settings.grain_density)
+    return point_at_rest(stress, density, specimen.law.initial_state(stress, density, specimen.parameters))
 
 
-def _at_normal_stress(settings: SteadyShearSettings | ShearStartSettings, dt: float, rates: Array) -> LoadingPath:
+def _number_of_unit_rate(settings: SteadyShearSettings | ShearStartSettings) -> float:
+    """The inertial number of the unit rate at the held normal stress."""
+    return inertial_number(1.0, settings.held_normal_stress, settings.grain_diameter, settings.grain_density)
+
+
+def _at_normal_stress(settings: AnyShearSettings, dt: float, rates: Array) -> LoadingPath:
     return LoadingPath(
         dt=dt,
         rates=rates,
@@ -228,6 +267,14 @@ EXPERIMENTS = {
             SHEARED,
             ShearStartSettings,
             shear_start,
+        ),
+        Experiment(
+            "shear-history",
+            "shear at held normal stress, with strains over time",
+            TIMED,
+            ShearHistorySettings,
+            shear_history,
+            SHEARED,
         ),
     )
 }

@@ -9,7 +9,7 @@ import numpy as np
 from grainlaw.materials.atomic import write_text
 from grainlaw.materials.errors import SimulationError
 from grainlaw.validation.dem.cell import Reduced
-from grainlaw.validation.dem.description import Compression
+from grainlaw.validation.dem.description import Compression, Triaxial
 from grainlaw.validation.dem.liggghts import contact_values, data_file, decks, template_texts
 from grainlaw.validation.dem.packing import loose, mean_volume, random_radii
 
@@ -26,11 +26,6 @@ REST = 10000
 
 def files(case: Compression, seed: int) -> Files:
     """Deck and data of the run."""
-    random = np.random.default_rng(seed)
-    number = round(FINAL_FRACTION * case.side**3 / mean_volume(case.grains))
-    side = (number * mean_volume(case.grains) / case.gas_fraction) ** (1.0 / 3.0)
-    space = np.array([[0.0, side]] * 3)
-    gas = loose(random_radii(case.grains, number, random), space, (True, True, True), random)
     deck = (
         decks()
         .get_template("compression.in.j2")
@@ -44,7 +39,17 @@ def files(case: Compression, seed: int) -> Files:
             **contact_values(case.contact, case.contact.friction),
         )
     )
-    return {"grains.data": data_file(gas, None, case.grains.density, space), "deck.in": deck}
+    return {"grains.data": gas_in_a_cube(case, seed), "deck.in": deck}
+
+
+def gas_in_a_cube(case: Compression | Triaxial, seed: int) -> str:
+    """Data of a gas in a periodic cube that will have about the side of the case when it is dense."""
+    random = np.random.default_rng(seed)
+    number = round(FINAL_FRACTION * case.side**3 / mean_volume(case.grains))
+    side = (number * mean_volume(case.grains) / case.gas_fraction) ** (1.0 / 3.0)
+    space = np.array([[0.0, side]] * 3)
+    gas = loose(random_radii(case.grains, number, random), space, (True, True, True), random)
+    return data_file(gas, None, case.grains.density, space)
 
 
 def templates(code: str) -> Files:
@@ -57,36 +62,37 @@ def reduce(case: Compression, folder: Path) -> Reduced:
     log = (folder / "log.txt").read_text(encoding="utf-8", errors="replace")
     if "FINISHED" not in log:
         raise SimulationError(f"LIGGGHTS stopped before the end; see {folder / 'log.txt'}")
-    solid = _solid_volume(folder / "grains.data")
+    solid = solid_volume(folder / "grains.data")
     loading, _, unloading = log.partition("\nLOADING")[2].partition("\nUNLOADING")
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
     last = 0
     for stage, part in (("loading", loading), ("unloading", unloading)):
-        for step, _, volume, xx, yy, zz in _rows(part):
+        for step, _, volume, xx, yy, zz in rows_of_log(part, 7):
             last, mean = int(step), (xx + yy + zz) / 3.0
             values = (step * case.time_step, solid / volume, mean, xx, yy, zz)
             writer.writerow((stage, *(f"{value:.7g}" for value in values)))
     write_text(folder / TABLE, text.getvalue())
-    return Reduced(last, int(_rows(unloading)[0][1]), TABLE)
+    return Reduced(last, int(rows_of_log(unloading, 7)[0][1]), TABLE)
 
 
-def _rows(log: str) -> list[tuple[float, ...]]:
-    """Lines of the log that hold thermodynamic output: step, atoms, volume, three stresses (and the processor time).
+def rows_of_log(log: str, words: int) -> list[tuple[float, ...]]:
+    """Lines of the log that hold thermodynamic output in so many words; the last one, the processor time, is left out.
 
     Each `run` prints its first state again; only one of the two lines is kept.
     """
     rows: dict[float, tuple[float, ...]] = {}
     for line in log.splitlines():
-        words = line.split()
-        if len(words) == 7 and words[0].isdigit() and words[1].isdigit():
-            values = tuple(float(word) for word in words[:6])
+        found = line.split()
+        if len(found) == words and found[0].isdigit() and found[1].isdigit():
+            values = tuple(float(word) for word in found[:-1])
             rows[values[0]] = values
     return list(rows.values())
 
 
-def _solid_volume(data: Path) -> float:
+def solid_volume(data: Path) -> float:
+    """Volume of all grains of a data file [m3]."""
     lines = data.read_text(encoding="utf-8").partition("\nAtoms\n")[2].split("\n")
     diameters = np.array([float(line.split()[2]) for line in lines if line.strip()])
     return float(np.pi / 6.0 * np.sum(diameters**3))

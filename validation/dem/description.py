@@ -136,25 +136,43 @@ class ShearCell(Case):
     normal_stress: Positive = 5000.0
 
 
-class PlaneShear(ShearCell):
+class SteadyShear(ShearCell):
     """Steady shear at several speeds, one after the other."""
 
-    kind: Literal["shear"] = "shear"
     stages: tuple[ShearStage, ...]
 
 
-class ShearStart(ShearCell):
-    """The start of shear of a dense packing, at one speed of the wall.
+class PlaneShear(SteadyShear):
+    """Between two rough walls."""
 
-    The packing is pressed together with the friction that makes columns dense, rests, and is sheared with the full one;
-    averages are taken over blocks of the nominal strain `block_strain`, up to `final_strain`.
+    kind: Literal["shear"] = "shear"
+
+
+class WallShear(SteadyShear):
+    """Over a flat plane in place of the lower wall, with the friction of the contacts."""
+
+    kind: Literal["wall-shear"] = "wall-shear"
+
+
+class ShearStep(Described):
+    """A speed of the wall, backwards if negative, for a nominal strain, of which blocks are averaged."""
+
+    nominal_inertial_number: float
+    strain: Positive
+    block_strain: Positive
+
+
+class ShearSteps(ShearCell):
+    """Shear of a packing at one speed of the wall after the other, followed over its strain.
+
+    The packing is pressed together with `packing_friction`, which makes it dense or loose, rests, and is sheared with
+    the full friction.
     """
 
-    kind: Literal["shear-start"] = "shear-start"
-    nominal_inertial_number: Positive = 0.03
-    final_strain: Positive = 1.0
-    block_strain: Positive = 0.025
+    kind: Literal["shear-steps"] = "shear-steps"
+    packing_friction: Annotated[float, Field(ge=0)] = 0.1
     resting_time: Positive = 1.2
+    steps: tuple[ShearStep, ...]
 
 
 class Compression(Case):
@@ -171,4 +189,20 @@ class Compression(Case):
     gas_fraction: Annotated[float, Field(gt=0, lt=0.4)] = 0.3
 
 
-AnyCase = Collapse | CylinderCollapse | PlaneShear | ShearStart | Compression
+class Triaxial(Case):
+    """Drained triaxial compression of a periodic cube: lateral stress held, axial strain at a rate [1/s].
+
+    The packing is pressed together with `packing_friction` and rests under the lateral stress on all sides.
+    """
+
+    kind: Literal["triaxial"] = "triaxial"
+    side: Positive = 0.15
+    lateral_stress: Positive = 5000.0
+    packing_friction: Annotated[float, Field(ge=0)] = 0.1
+    axial_rate: Positive = 0.1
+    final_strain: Positive = 0.2
+    resting_time: Positive = 0.3
+    gas_fraction: Annotated[float, Field(gt=0, lt=0.4)] = 0.3
+
+
+AnyCase = Collapse | CylinderCollapse | PlaneShear | WallShear | ShearSteps | Compression | Triaxial

@@ -40,15 +40,20 @@ def reduce_runs(folder: Path, into: Path) -> list[Path]:
             observation = observe_folder(run)
             write_observation(path, observation if _shows_stress(record) else without_stress(observation))
             written.append(path)
-    cells = {kind: [(run, record) for run, record in runs if record["kind"] == kind] for kind in ROWS}
-    for kind, found in cells.items():
-        if found:
-            path = into / f"{kind.replace('-', '_')}.csv"
-            write_text(path, _table([row for run, record in found for row in ROWS[kind](run, record)]))
-            written.append(path)
-    if any(cells.values()):
-        written.append(_write_provenance(into, [entry for found in cells.values() for entry in found]))
+    cells = [(run, record) for run, record in runs if record["kind"] in ROWS]
+    for case in dict.fromkeys(record["case"] for _, record in cells):
+        path = into / table_name(case)
+        rows = [row for run, record in cells if record["case"] == case for row in ROWS[record["kind"]](run, record)]
+        write_text(path, _table(rows))
+        written.append(path)
+    if cells:
+        written.append(_write_provenance(into, cells))
     return written
+
+
+def table_name(case: str) -> str:
+    """Name of the file with the reduced data of all runs of a cell."""
+    return f"{case.replace('-', '_')}.csv"
 
 
 def without_stress(observation: Observation) -> Observation:
@@ -66,8 +71,8 @@ def _write_provenance(into: Path, cells: list[tuple[Path, dict[str, Any]]]) -> P
     """Say what the tables were made from; what a table that is not made anew was made from stays."""
     path = into / PROVENANCE
     known = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    replaced = {record["kind"] for _, record in cells}
-    kept = {name: record for name, record in known.items() if record["kind"] not in replaced}
+    replaced = {record["case"] for _, record in cells}
+    kept = {name: record for name, record in known.items() if record["case"] not in replaced}
     made = {f"{record['case']}/{run.name}": _provenance(record) for run, record in cells}
     write_text(path, json.dumps(kept | made, indent=1) + "\n")
     return path
@@ -122,12 +127,14 @@ def _compression_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]
     ]
 
 
-def _shear_start_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
-    """Friction and solid fraction over the strain; the first row tells how dense the packing was."""
+def _shear_steps_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
+    """Friction and solid fraction over time and strain, stage by stage; the first row tells how dense it was."""
     return [
         {
             "code": record["code"],
             "seed": record["seed"],
+            "stage": row["stage"],
+            "time": row["time"],
             "strain": row["strain"],
             "I": row["inertial_number"],
             "phi": row["solid_fraction"],
@@ -138,7 +145,48 @@ def _shear_start_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]
     ]
 
 
-ROWS = {"shear": _shear_rows, "shear-start": _shear_start_rows, "compression": _compression_rows}
+def _wall_shear_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
+    """Friction of the plane over the slip along it, V/sqrt(sigma_zz/rho_p)."""
+    rows = [
+        {
+            "code": record["code"],
+            "seed": record["seed"],
+            "slip": row["slip_number"],
+            "I": row["inertial_number"],
+            "mu": row["friction"],
+            "se_mu": row["friction_error"],
+            "phi": row["solid_fraction"],
+            "tau_over_p3": round(float(row["shear_stress"]) / float(row["pressure"]), 6),
+            "szz": row["normal_stress"],
+            "slip_velocity": row["slip_velocity"],
+            "top_velocity": row["top_velocity"],
+        }
+        for row in _read(run / record["table"])
+    ]
+    return sorted(rows, key=lambda row: float(row["slip"]))
+
+
+def _triaxial_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
+    """Stresses and solid fraction over the axial strain, from the isotropic state."""
+    named = {"axial_strain": "strain", "solid_fraction": "phi", "axial_stress": "sa"}
+    return [
+        {
+            "code": record["code"],
+            "seed": record["seed"],
+            **{short: row[name] for name, short in named.items()},
+            "sr": round(0.5 * (float(row["stress_xx"]) + float(row["stress_yy"])), 2),
+        }
+        for row in _read(run / record["table"])
+    ]
+
+
+ROWS = {
+    "shear": _shear_rows,
+    "wall-shear": _wall_shear_rows,
+    "shear-steps": _shear_steps_rows,
+    "compression": _compression_rows,
+    "triaxial": _triaxial_rows,
+}
 
 
 def _provenance(record: dict[str, Any]) -> dict[str, Any]:

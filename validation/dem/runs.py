@@ -12,8 +12,17 @@ import numpy as np
 
 from grainlaw.materials.atomic import write_text
 from grainlaw.materials.errors import InputError, SimulationError
-from grainlaw.validation.dem import collapse, compression, shear, shear_start
-from grainlaw.validation.dem.description import AnyCase, Collapse, Compression, CylinderCollapse, PlaneShear, ShearStart
+from grainlaw.validation.dem import collapse, compression, shear, shear_steps, triaxial, wall_shear
+from grainlaw.validation.dem.description import (
+    AnyCase,
+    Collapse,
+    Compression,
+    CylinderCollapse,
+    PlaneShear,
+    ShearSteps,
+    Triaxial,
+    WallShear,
+)
 from grainlaw.validation.dem.geometry import Column, geometry_of
 from grainlaw.validation.dem.packing import Packing, cut
 from grainlaw.validation.dem.programs import LIGGGHTS, PROGRAMS, YADE, Cost, installed_version, run_program
@@ -155,8 +164,10 @@ def _kind(case: AnyCase) -> Any:
         Collapse: collapse,
         CylinderCollapse: collapse,
         PlaneShear: shear,
-        ShearStart: shear_start,
+        WallShear: wall_shear,
+        ShearSteps: shear_steps,
         Compression: compression,
+        Triaxial: triaxial,
     }
     return modules[type(case)]
 

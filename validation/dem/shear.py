@@ -10,7 +10,7 @@ import numpy as np
 
 from grainlaw.materials.atomic import write_text
 from grainlaw.validation.dem.cell import Reduced
-from grainlaw.validation.dem.description import PlaneShear, ShearCell, ShearStage
+from grainlaw.validation.dem.description import PlaneShear, ShearCell, ShearStage, SteadyShear, WallShear
 from grainlaw.validation.dem.liggghts import contact_values, data_file, decks, template_texts
 from grainlaw.validation.dem.packing import Array, Packing, loose, mean_volume, random_radii
 
@@ -43,7 +43,7 @@ COLUMNS = (
 )
 
 
-def files(case: PlaneShear, seed: int) -> Files:
+def files(case: SteadyShear, seed: int) -> Files:
     """Deck and data of the run of all inertial numbers, the fastest first."""
     data, values = cell(case, seed)
     deck = decks().get_template("shear.in.j2")
@@ -69,10 +69,10 @@ def cell(case: ShearCell, seed: int) -> tuple[str, dict[str, Any]]:
     mean = grains.mean_diameter
     lower = rough_wall(case, random)
     upper = Packing(rough_wall(case, random).centres + np.array([0.0, 0.0, gap]), lower.radii)
-    walls = Packing(
-        np.vstack([lower.centres - [0.0, 0.0, mean], upper.centres + np.array([0.0, 0.0, mean])]),
-        np.tile(lower.radii, 2),
-    )
+    upper = Packing(upper.centres + np.array([0.0, 0.0, mean]), upper.radii)
+    walls = upper
+    if not isinstance(case, WallShear):
+        walls = Packing(np.vstack([lower.centres - [0.0, 0.0, mean], upper.centres]), np.tile(lower.radii, 2))
     box = np.array([[0.0, case.length], [0.0, case.depth], [-3.0 * mean, gap + 3.0 * mean]])
     closing = gap * (1.0 - LOOSE_FRACTION / CLOSED_FRACTION)
     return data_file(gas, walls, grains.density, box), {
@@ -84,6 +84,7 @@ def cell(case: ShearCell, seed: int) -> tuple[str, dict[str, Any]]:
         "closing_steps": round(closing / CLOSING_SPEED / case.time_step),
         "force_per_grain": case.normal_stress * area / len(upper),
         "bin": 0.5 * mean,
+        "flat": isinstance(case, WallShear),
     }
 
 
@@ -122,7 +123,7 @@ def reduce(case: PlaneShear, folder: Path) -> Reduced:
     return Reduced(steps, grains, TABLE)
 
 
-def _stage(case: PlaneShear, stage: ShearStage) -> dict[str, Any]:
+def _stage(case: SteadyShear, stage: ShearStage) -> dict[str, Any]:
     rate_ = rate(case, stage.nominal_inertial_number)
     strain_per_step = rate_ * case.time_step
     every = max(1, round(stage.average_strain / strain_per_step / BLOCKS / SAMPLES_PER_BLOCK))
@@ -180,7 +181,7 @@ def _steady(case: PlaneShear, blocks: list[Array], tops: Array) -> dict[str, flo
 
 
 def bulk(case: ShearCell, block: Array, top: float) -> tuple[float, ...]:
-    """Rate, solid fraction, stresses xx, yy, zz, xz (compression and drag positive), kinetic share of zz in a block."""
+    """Rate, solid fraction, stresses xx, yy, zz (compression) and xz (drag along x), kinetic share of zz in a block."""
     height = top - 0.75 * case.grains.mean_diameter
     inside = (block[:, 1] > BULK[0] * height) & (block[:, 1] < BULK[1] * height)
     z, count = block[inside, 1], block[inside, 2]
@@ -193,4 +194,4 @@ def bulk(case: ShearCell, block: Array, top: float) -> tuple[float, ...]:
     total = [float(np.mean((c + k) * per_volume)) for c, k in zip(contact, kinetic, strict=True)]
     slope = float(np.polyfit(z, vx, 1, w=np.sqrt(count))[0])
     share = float(np.mean(kinetic[2] * per_volume)) / total[2]
-    return (slope, float(np.mean(density)) / case.grains.density, total[0], total[1], total[2], abs(total[3]), share)
+    return (slope, float(np.mean(density)) / case.grains.density, total[0], total[1], total[2], -total[3], share)

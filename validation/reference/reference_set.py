@@ -14,7 +14,7 @@ from grainlaw.validation.grains.distance import Comparison, compare
 from grainlaw.validation.grains.observation import Observation, read_observation
 
 REFERENCE = Path(__file__).resolve().parent
-COLLAPSES, SHEAR, SHEAR_START, COMPRESSION = "collapse", "shear.csv", "shear_start.csv", "compression.csv"
+COLLAPSES = "collapse"
 Rows = list[dict[str, float]]
 
 
@@ -69,18 +69,20 @@ class Ensemble:
 
 @dataclass(frozen=True)
 class ReferenceSet:
-    """Ensembles by case, and the rows of the shear tests, steady and from the start, and of compression."""
+    """Ensembles by case, and the rows of the element tests of the grains, by the name of their table."""
 
     ensembles: dict[str, Ensemble]
-    shear: Rows
-    shear_start: Rows
-    compression: Rows
+    tests: dict[str, Rows]
 
     def ensemble(self, case: str) -> Ensemble:
         """The runs of a case. Raises InputError for a case that is not there."""
         if case not in self.ensembles:
             raise InputError(f"the reference set has no case '{case}'; {nearest_name(case, self.ensembles)}")
         return self.ensembles[case]
+
+    def test(self, name: str) -> Rows:
+        """The rows of an element test; none if it is not there."""
+        return self.tests.get(name, [])
 
     def columns(self, floor: str) -> list[Ensemble]:
         """The plain columns on a floor, in plane strain, from the squat to the slender."""
@@ -105,13 +107,11 @@ def read_reference_set(folder: Path = REFERENCE) -> ReferenceSet:
         observation = read_observation(path)
         by_case.setdefault(str(observation.description.get("case", "")), []).append(observation)
     ensembles = {case: Ensemble(case, tuple(runs)) for case, runs in by_case.items()}
-    return ReferenceSet(ensembles, *(_rows(folder / name) for name in (SHEAR, SHEAR_START, COMPRESSION)))
+    return ReferenceSet(ensembles, {path.stem: _rows(path) for path in sorted(folder.glob("*.csv"))})
 
 
 def _rows(path: Path) -> Rows:
     """The numbers of a table with a header; columns of text are left out."""
-    if not path.is_file():
-        return []
     with path.open(encoding="utf-8", newline="") as file:
         lines = [line for line in file if not line.startswith("#")]
     return [{name: float(text) for name, text in row.items() if _is_number(text)} for row in csv.DictReader(lines)]

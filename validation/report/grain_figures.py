@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from grainlaw.validation.dem.judging.fitting_data import friction_of_mean_pressure
+from grainlaw.validation.dem.judging.data_table import friction_of_mean_pressure
 from grainlaw.validation.dem.judging.judgement import Judgement
 from grainlaw.validation.grains.distance import surface_at
 from grainlaw.validation.grains.observation import Observation

@@ -18,6 +18,8 @@ from grainlaw.validation.reference.reference_set import REFERENCE, Ensemble, Sca
 from grainlaw.validation.report.page import Table
 
 BANDS = (PROFILE_BAND, *(measure.band for measure in MEASURES))
+# Marks of what is not within its band.
+BEYOND = {Verdict.ACCEPTABLE: "~", Verdict.DIFFERS: "!"}
 SYMBOLS = ("E_A", *(measure.symbol for measure in MEASURES))
 
 
@@ -113,23 +115,29 @@ def summary_table(report: Report) -> Table:
 
 
 def element_table(found: Sequence[ElementVerdict]) -> Table:
-    """One row for each law, one column for what an element test measures."""
-    measured = {one.name: one for verdict in found for one in verdict.distances}
-    bands = ", ".join(f"{name} {percent(one.band)}" for name, one in measured.items() if one.band)
-    note = (
-        "Relative to the grains; of compression and steady shear the root mean square. Peak to dilation: the start of "
-        f"shear of a dense packing. Within the band: {bands}."
+    """One row for what an element test measures, one column for each law."""
+    bands = {one.name: one.band for verdict in found for one in verdict.distances}
+    by_law = [{one.name: one for one in verdict.distances} for verdict in found]
+    rows = [
+        (name, "" if band is None else percent(band), *(_marked(law.get(name)) for law in by_law))
+        for name, band in bands.items()
+    ]
+    within = [sum(one.verdict is Verdict.INDISTINGUISHABLE for one in verdict.distances) for verdict in found]
+    rows.append(
+        ("within", "", *(f"{count} of {len(verdict.distances)}" for count, verdict in zip(within, found, strict=True)))
     )
-    rows = [_element_row(verdict, list(measured)) for verdict in found]
-    return Table("Element tests", note, ("law", *measured, "within", "beyond twice the band"), tuple(rows))
+    failures = "".join(f" {verdict.title}: {failure}." for verdict in found for failure in verdict.failures)
+    note = (
+        "Relative to the grains; root mean squares but for peaks, the friction after them, and dilation. "
+        f"{BEYOND[Verdict.ACCEPTABLE]}: beyond the band; {BEYOND[Verdict.DIFFERS]}: beyond twice the band.{failures}"
+    )
+    return Table("Element tests", note, ("what", "band", *(verdict.title for verdict in found)), tuple(rows))
 
 
-def _element_row(found: ElementVerdict, names: Sequence[str]) -> tuple[str, ...]:
-    by_name = {one.name: one for one in found.distances}
-    cells = [_relative(by_name[name]) if name in by_name else "" for name in names]
-    within = sum(one.verdict is Verdict.INDISTINGUISHABLE for one in found.distances)
-    beyond = [one.name for one in found.distances if one.verdict is Verdict.DIFFERS]
-    return (found.title, *cells, f"{within} of {len(found.distances)}", "; ".join([*beyond, *found.failures]))
+def _marked(found: Distance | None) -> str:
+    if found is None or found.verdict is None:
+        return ""
+    return f"{_relative(found)} {BEYOND.get(found.verdict, '')}".rstrip()
 
 
 def parameter_table(laws: Sequence[FittedLaw]) -> Table:

@@ -1,12 +1,14 @@
 """How far fitted laws are from the element tests of the grains, test by test, whatever each was fitted to.
 
 Start of shear of a dense packing: the peak of the friction, the strain at which it is reached, the friction after it
-and the dilation. Compression and unloading, and steady shear: root mean squares over the rows.
+and the dilation; triaxial compression the same. Everything else: root mean squares over the rows, of compression and
+steady shear relative row by row, of shear at changing rates relative to that of the grains.
 """
 
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +19,15 @@ from grainlaw.materials.calibration.data import DataSet, read_data
 from grainlaw.materials.calibration.model import ForwardModel, answer
 from grainlaw.validation.dem.judging.fitted_laws import FittedLaw
 from grainlaw.validation.dem.judging.fitting_data import CRITICAL_FLOW_FILE, CYCLE_FILE, FLOW_FILE, PEAK_FILE
+from grainlaw.validation.dem.judging.history_data import (
+    LOOSE_FILE,
+    MEDIUM_FILE,
+    PRESSURE_FILE,
+    RATE_DROP_FILE,
+    RATE_JUMP_FILE,
+    REVERSAL_FILE,
+    TRIAXIAL_FILE,
+)
 from grainlaw.validation.grains.distance import Distance
 
 Array = NDArray[np.float64]
@@ -24,13 +35,18 @@ Answers = dict[str, Array]
 
 # The packings of grains scatter by 2 to 8 % in friction at the start of shear, by 5 to 12 % in dilation.
 PEAK_BAND, SOFTENING_BAND, DILATION_BAND, COMPRESSION_BAND, STEADY_BAND = 0.05, 0.07, 0.10, 0.07, 0.03
+# Between its values in flow and at rest the solid fraction changes by a tenth; packings differ by half a percent.
+FRACTION_BAND = 0.015
 # The grains tell the strain of their peak to half of it.
 PEAK_STRAIN_BAND = 0.5
 # Strains after the peak of the grains.
 AFTER_PEAK = (0.025, 0.105)
 # Steps of the law between the strains of the data, among which it has a peak of its own.
 FINER = 5
+# Axial strains after the peak of triaxial compression.
+AFTER_TRIAXIAL_PEAK = (0.05, 0.16)
 FRICTION, FRACTION, PRESSURE = "friction_of_mean_pressure", "solid_fraction", "pressure"
+RATIO, VOLUME = "stress_ratio", "volumetric_strain"
 
 
 @dataclass(frozen=True)
@@ -96,6 +112,36 @@ def _start_of_shear(law: FittedLaw, path: Path) -> list[Distance]:
     ]
 
 
+def _triaxial(law: FittedLaw, path: Path) -> list[Distance]:
+    (data,) = _data(law, path)
+    grains = {measured.name: measured.values for measured in data.measured}
+    of_law = _answers(law, data, data.abscissa)
+    after = (data.abscissa > AFTER_TRIAXIAL_PEAK[0]) & (data.abscissa < AFTER_TRIAXIAL_PEAK[1])
+    excess = of_law[RATIO][after] / grains[RATIO][after] - 1.0
+    furthest = int(np.argmax(np.abs(excess)))
+    ratios = of_law[RATIO][after][furthest], grains[RATIO][after][furthest]
+    return [
+        _relative("triaxial peak", "1", of_law[RATIO].max(), grains[RATIO].max(), PEAK_BAND),
+        _relative("triaxial q/p after the peak", "1", *ratios, SOFTENING_BAND),
+        _relative("triaxial dilation", "1", of_law[VOLUME][-1], grains[VOLUME][-1], DILATION_BAND),
+    ]
+
+
+def _followed(law: FittedLaw, path: Path, name: str) -> list[Distance]:
+    """Friction and solid fraction along a history of shear, wherever they were measured."""
+    (data,) = _data(law, path)
+    of_law = _answers(law, data, data.abscissa)
+    distances = []
+    for measured, what, band in zip(
+        data.measured, ("friction", "packing"), (SOFTENING_BAND, FRACTION_BAND), strict=True
+    ):
+        known = np.isfinite(measured.values)
+        scale = float(np.sqrt(np.mean(measured.values[known] ** 2)))
+        errors = (of_law[measured.name][known] - measured.values[known]) / scale
+        distances.append(_scatter(f"{name}: {what}", (errors**2).tolist(), band))
+    return distances
+
+
 def _compression(law: FittedLaw, path: Path) -> list[Distance]:
     squares: list[float] = []
     for data in _data(law, path):
@@ -105,17 +151,17 @@ def _compression(law: FittedLaw, path: Path) -> list[Distance]:
     return [_scatter("compression", squares, COMPRESSION_BAND)]
 
 
-def _steady_shear(law: FittedLaw, path: Path) -> list[Distance]:
-    """Over all rates; the solid fraction of a law that was fitted to one."""
+def _steady_shear(law: FittedLaw, path: Path, name: str = "steady") -> list[Distance]:
+    """Over all rates, or pressures; the solid fraction of a law that was fitted to one."""
     own = next((name for name in law.judged.data if name in (FLOW_FILE, CRITICAL_FLOW_FILE)), "")
-    (data,) = _data(law, path.with_name(own) if own else path)
-    of_law = _answers(law, data, data.abscissa)
-    names = {FRICTION: "steady friction"} | ({FRACTION: "steady solid fraction"} if own else {})
-    return [
-        _scatter(names[found.name], ((of_law[found.name] / found.values - 1.0) ** 2).tolist(), STEADY_BAND)
-        for found in data.measured
-        if found.name in names
-    ]
+    squares: dict[str, list[float]] = {FRICTION: [], FRACTION: []} if own else {FRICTION: []}
+    for data in _data(law, path.with_name(own) if own and path.name == FLOW_FILE else path):
+        of_law = _answers(law, data, data.abscissa)
+        for found in data.measured:
+            if found.name in squares:
+                squares[found.name] += ((of_law[found.name] / found.values - 1.0) ** 2).tolist()
+    said = {FRICTION: f"{name} friction", FRACTION: f"{name} solid fraction"}
+    return [_scatter(said[quantity], found, STEADY_BAND) for quantity, found in squares.items()]
 
 
 def _relative(name: str, unit: str, measured: float, reference: float, band: float) -> Distance:
@@ -132,4 +178,11 @@ MEASURED: dict[str, Callable[[FittedLaw, Path], list[Distance]]] = {
     PEAK_FILE: _start_of_shear,
     CYCLE_FILE: _compression,
     FLOW_FILE: _steady_shear,
+    PRESSURE_FILE: partial(_steady_shear, name="0.5 and 50 kPa, steady"),
+    MEDIUM_FILE: partial(_followed, name="from medium"),
+    LOOSE_FILE: partial(_followed, name="from loose"),
+    RATE_DROP_FILE: partial(_followed, name="rate drop"),
+    RATE_JUMP_FILE: partial(_followed, name="rate jump"),
+    REVERSAL_FILE: partial(_followed, name="reversal"),
+    TRIAXIAL_FILE: _triaxial,
 }

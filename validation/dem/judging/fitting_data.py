@@ -4,12 +4,21 @@ Friction is taken over the mean pressure, as the laws define it; the grains show
 """
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from grainlaw.materials import InputError, atomic
+from grainlaw.validation.dem.judging.data_table import (
+    FRACTION,
+    FRICTION,
+    NUMBER,
+    STRAIN,
+    by_seed,
+    data_table,
+    friction_of_mean_pressure,
+)
+from grainlaw.validation.dem.judging.history_data import LOOSE_FILE, MEDIUM_FILE, history_tables
 from grainlaw.validation.reference.reference_set import ReferenceSet, Rows
 
 SHEAR_FILE, SLOW_SHEAR_FILE, COMPRESSION_FILE = "shear.csv", "slow_shear.csv", "compression.csv"
@@ -27,18 +36,18 @@ PRESSURE_ERROR = 0.05
 # Past the elastic rise of the stress, and up to where the bulk of every packing has been sheared.
 START_STRAINS = np.linspace(0.04, 0.16, 7)
 PEAK_STRAINS = np.array([0.01, 0.02, 0.03, 0.04, 0.05, *START_STRAINS[1:]])
-FRICTION = ("friction_of_mean_pressure [1]", "standard_error_friction_of_mean_pressure [1]")
-FRACTION = ("solid_fraction [1]", "standard_error_solid_fraction [1]")
-NUMBER, STRAIN = "engineering_inertial_number [1]", "engineering_shear_strain [1]"
+# Of packings that are not dense: their friction rises over a tenth.
+LATE_STRAINS = np.linspace(0.02, 0.36, 18)
 
 
 def write_data(reference: ReferenceSet, folder: Path, grain_density: float, grain_diameter: float) -> None:
     """Write the data files into a folder. Raises InputError if the reference set holds no shear."""
-    if not reference.shear:
+    shear, start, compression = (reference.test(name) for name in ("shear", "shear_start", "compression"))
+    if not shear:
         raise InputError("the reference set holds no shear test to fit the laws to")
     folder.mkdir(parents=True, exist_ok=True)
     grains = {"grain_density": f"{grain_density:g}", "grain_diameter": f"{grain_diameter:.6g}"}
-    steady = sorted(reference.shear, key=lambda row: row["I"])
+    steady = sorted(shear, key=lambda row: row["I"])
     slow = [row for row in steady if row["I"] <= SLOW]
     slow_density = grain_density * float(np.mean([row["phi"] for row in slow]))
     # Twice p is the size of Cam Clay's surface in the critical state; its softening needs shorter steps.
@@ -48,27 +57,26 @@ def write_data(reference: ReferenceSet, folder: Path, grain_density: float, grai
         SLOW_SHEAR_FILE: _shear_table(slow, grains, with_fraction=False),
         FLOW_FILE: _shear_table(steady, grains, with_fraction=True),
         CRITICAL_FLOW_FILE: _shear_table(steady, grains | critical, with_fraction=True),
+        **history_tables(reference, grains),
     }
-    if reference.shear_start:
-        texts[START_FILE] = _start_table(reference.shear_start, grains, START_STRAINS)
-        texts[PEAK_FILE] = _start_table(reference.shear_start, grains, PEAK_STRAINS)
-    if reference.compression:
-        texts[COMPRESSION_FILE] = _compression_table(reference.compression, grain_density)
-        texts[CYCLE_FILE] = _cycle_table(reference.compression, grain_density)
+    if start:
+        texts[START_FILE] = _start_table(start, grains, START_STRAINS)
+        texts[PEAK_FILE] = _start_table(start, grains, PEAK_STRAINS)
+    for name in (MEDIUM_FILE, LOOSE_FILE):
+        rows = reference.test(name.removesuffix(".csv"))
+        if rows:
+            texts[name] = _start_table(rows, grains, LATE_STRAINS)
+    if compression:
+        texts[COMPRESSION_FILE] = _compression_table(compression, grain_density)
+        texts[CYCLE_FILE] = _cycle_table(compression, grain_density)
     for name, text in texts.items():
         atomic.write_text(folder / name, text)
-
-
-def friction_of_mean_pressure(row: dict[str, float]) -> tuple[float, float]:
-    """tau/p of a row of plane shear, and its standard error."""
-    friction = row["tau_over_p3"]
-    return friction, row["se_mu"] * friction / row["mu"]
 
 
 def _shear_table(rows: Rows, statements: dict[str, str], with_fraction: bool) -> str:
     stress = f"{np.mean([row['szz'] for row in rows]):.6g}"
     fraction = [(row["phi"], row["se_phi"]) if with_fraction else () for row in rows]
-    return _table(
+    return data_table(
         {"test": "steady-shear", "held_normal_stress": stress, **statements},
         (NUMBER, *FRICTION, *(FRACTION if with_fraction else ())),
         [(row["I"], *friction_of_mean_pressure(row), *own) for row, own in zip(rows, fraction, strict=True)],
@@ -77,7 +85,7 @@ def _shear_table(rows: Rows, statements: dict[str, str], with_fraction: bool) ->
 
 def _start_table(rows: Rows, statements: dict[str, str], strains: np.ndarray) -> str:
     """Means over the packings at common strains, with standard errors from their scatter."""
-    seeds = _by_seed(rows)
+    seeds = by_seed(rows)
     measured = []
     for name in ("tau_over_p3", "phi"):
         values = np.array([_at_strains(seed, name, strains) for seed in seeds])
@@ -94,11 +102,7 @@ def _start_table(rows: Rows, statements: dict[str, str], strains: np.ndarray) ->
         "density": f"{density:.6g}",
     }
     columns = np.column_stack([strains, *measured])
-    return _table(own | statements, (STRAIN, *FRICTION, *FRACTION), [tuple(row) for row in columns.tolist()])
-
-
-def _by_seed(rows: Rows) -> list[Rows]:
-    return [[row for row in rows if row["seed"] == seed] for seed in sorted({row["seed"] for row in rows})]
+    return data_table(own | statements, (STRAIN, *FRICTION, *FRACTION), [tuple(row) for row in columns.tolist()])
 
 
 def _at_strains(rows: Rows, name: str, at: np.ndarray) -> np.ndarray:
@@ -113,7 +117,7 @@ def _compression_table(rows: Rows, grain_density: float) -> str:
     used = [row for row in loading if SMALLEST_PRESSURE <= row["p"] <= LARGEST_PRESSURE]
     used = used[:: max(1, len(used) // COMPRESSION_POINTS)]
     first = used[0]
-    return _table(
+    return data_table(
         {
             "test": "isotropic",
             "initial_pressure": f"{first['p']:.6g}",
@@ -128,7 +132,7 @@ def _compression_table(rows: Rows, grain_density: float) -> str:
 def _cycle_table(rows: Rows, grain_density: float) -> str:
     """Compression to the largest pressure and back, each packing a test of its own; measured as in the columns."""
     lines = []
-    for packing in _by_seed(rows):
+    for packing in by_seed(rows):
         top = int(np.argmax([row["p"] for row in packing]))
         first = next(row for row in packing if row["p"] >= SMALLEST_PRESSURE)
         for index, row in enumerate(packing):
@@ -136,7 +140,7 @@ def _cycle_table(rows: Rows, grain_density: float) -> str:
             if measured or index == top:
                 start = first["p"], grain_density * first["phi"], np.log(row["phi"] / first["phi"])
                 lines.append((*start, *((row["p"], PRESSURE_ERROR * row["p"]) if measured else (math.nan, math.nan))))
-    return _table(
+    return data_table(
         {"test": "isotropic", "grain_density": f"{grain_density:g}", "strain_step": "2e-3"},
         (
             "initial_pressure",
@@ -147,14 +151,3 @@ def _cycle_table(rows: Rows, grain_density: float) -> str:
         ),
         lines,
     )
-
-
-def _table(statements: dict[str, str], names: Sequence[str], rows: Sequence[tuple[float, ...]]) -> str:
-    lines = [f"# {name} = {value}" for name, value in statements.items()]
-    lines += [",".join(names), *(",".join(_cell(value) for value in row) for row in rows)]
-    return "\n".join(lines) + "\n"
-
-
-def _cell(value: float) -> str:
-    """A number, or nothing where nothing was measured."""
-    return "" if math.isnan(value) else f"{value:.6g}"
