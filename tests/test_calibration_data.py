@@ -6,6 +6,7 @@ import pytest
 from grainlaw.materials import InputError, get_material
 from grainlaw.materials.calibration.data import read_data
 from grainlaw.materials.calibration.experiments import EXPERIMENTS
+from grainlaw.materials.calibration.model import ForwardModel, answer
 from grainlaw.materials.calibration.quantities import QUANTITIES
 
 LAW = get_material("modified_cam_clay")
@@ -113,3 +114,61 @@ def test_no_name_means_two_things():
     settings = {name for experiment in EXPERIMENTS.values() for name in experiment.settings._fields}
     controls = {name for experiment in EXPERIMENTS.values() for name in experiment.controls}
     assert settings & (controls | set(QUANTITIES)) == set()
+
+
+HISTORY = (
+    "# test = shear-history\n# held_normal_stress = 5e3\n# density = 1350\n"
+    "time [s],engineering_shear_strain [1],friction_of_mean_pressure [1]\n"
+    "0.1,1,\n0.2,1.1,0.5\n0.3,1.1,\n0.4,0.1,-0.5\n"
+)
+
+
+def test_shear_follows_strains_over_time(tmp_path):
+    """Friction of mu(I) at the rate of each row, with its sign: 10, 1, 0 and -10 in the engineering rate."""
+    path = tmp_path / "history.csv"
+    path.write_text(HISTORY)
+    law = get_material("mu_i_lc")
+    (data,) = read_data(path, law)
+    values = law.parameter_sets["paper"].parameters._asdict()
+    result = ForwardModel(law, (data,)).history(data, values, data.abscissa)
+    pressures = result.pressure[1:]
+    numbers = [
+        0.5 * rate * values["grain_diameter"] / np.sqrt(p / values["grain_density"])
+        for rate, p in zip((10.0, 1.0, 0.0, 10.0), pressures, strict=True)
+    ]
+    mu_0, mu_d, constant = (
+        values[name] for name in ("static_friction", "dynamic_friction", "inertial_number_constant")
+    )
+    expected = [mu_0 + (mu_d - mu_0) / (constant / number + 1.0) if number else 0.0 for number in numbers]
+    friction = answer(result, data.measured[0])
+    assert friction[[0, 1, 3]] == pytest.approx([expected[0], expected[1], -expected[3]], rel=1e-3)
+    assert friction[2] == pytest.approx(friction[1], rel=0.02)
+    assert result.time.tolist() == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4])
+
+
+def test_a_history_between_its_rows_is_the_same_history(tmp_path):
+    path = tmp_path / "history.csv"
+    path.write_text(HISTORY)
+    (data,) = read_data(path, LAW)
+    assert data.driven(np.array([0.05, 0.15, 0.35])).tolist() == pytest.approx(
+        np.array([[0.05, 0.25], [0.15, 0.525], [0.35, 0.3]])
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "engineering_shear_strain",
+            "axial_strain",
+            "shear-history needs one column engineering_shear_strain or",
+        ),
+        ("0.3,1.1", "0.2,1.1", "line 7: time must rise from row to row"),
+        ("0.1,1,", "0,1,", "line 5: time must rise from row to row, from above 0"),
+        ("0.2,1.1", "0.2,", "line 6: empty cell in engineering_shear_strain"),
+        ("time [s]", "time [ms]", r"column 'time' has the unit \[ms\]; allowed: \[s\]"),
+    ],
+)
+def test_faults_of_a_history_are_told(old, new, message, tmp_path):
+    with pytest.raises(InputError, match=message):
+        read(tmp_path, HISTORY.replace(old, new))
