@@ -53,6 +53,8 @@ def _content(report: Report, command: str) -> dict[str, Any]:
         "unfitted": report.unfitted,
         "element_tests": [_elements(found) for found in report.elements],
         "judgements": [_judgement(found) for found in report.judgements],
+        "flat_floors": [_judgement(found) for found in report.flat],
+        "flat_floor_friction": report.flat_friction,
         "controls": [_judgement(found) for found in report.controls],
         "limits": [_judgement(found) for found in report.limits],
         "experiment": None if report.experiment is None else [asdict(one) for one in report.experiment.measurements],

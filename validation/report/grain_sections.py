@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from grainlaw.validation.case import Evidence
 from grainlaw.validation.cases.collapses import aluminium_bars
 from grainlaw.validation.dem.judging.judgement import Judgement
-from grainlaw.validation.dem.judging.laws_against_grains import Report
+from grainlaw.validation.dem.judging.laws_against_grains import FLAT, Report
 from grainlaw.validation.grains.distance import PROFILE_BAND
 from grainlaw.validation.reference.reference_set import Ensemble, Rows
 from grainlaw.validation.report.case_report import measurement_table, pictures
@@ -40,8 +40,9 @@ MODELLED = (
 )
 CONTINUUM = (
     "The continuum starts with the mass and the mean surface of the packing at rest under its own weight, with equal "
-    "normal stresses, on a floor with friction 0.7; by symmetry half of the column is run, in plane strain, and of a "
-    "cylinder a radian, in axisymmetry."
+    "normal stresses, on a floor with friction 0.7, that of the contacts, and on a flat one with the friction that "
+    "plane shear over a plane shows; by symmetry half of the column is run, in plane strain, and of a cylinder a "
+    "radian, in axisymmetry."
 )
 LEFT_OUT = (
     "Left out of the continuum: the rolling of grains on the floor, the layering of grains at smooth walls before the "
@@ -63,7 +64,7 @@ def sections(report: Report, shear: Rows) -> list[Section]:
         Section("Verdicts", tables=(summary_table(report),)),
         _fits(report, shear),
         Section("Element tests", tables=(element_table(report.elements),)),
-        *(_column(report, ensemble) for ensemble in report.columns),
+        *(_column(report, ensemble) for ensemble in (*report.columns, *report.flat_columns)),
         Section(controls.title, (_controls_said(report),), (controls,)),
     ]
     if report.limits:
@@ -110,7 +111,9 @@ def _experiment(found: Evidence) -> Section:
 def _column(report: Report, ensemble: Ensemble) -> Section:
     judgements = report.of_column(ensemble)
     table = verdict_table(ensemble, judgements)
-    return Section(table.title, tables=(table, profile_table(judgements)), figures=column_figures(ensemble, judgements))
+    tables, figures = (table, profile_table(judgements)), column_figures(ensemble, judgements)
+    said = (f"The floor of the laws has the friction {report.flat_friction:.2f}.",) if ensemble.floor == FLAT else ()
+    return Section(table.title, said, tables, figures)
 
 
 def column_figures(ensemble: Ensemble, judgements: Sequence[Judgement]) -> tuple[Picture, ...]:

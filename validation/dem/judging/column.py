@@ -17,10 +17,11 @@ from grainlaw.validation.grains.material_points import DEPTH, mirrored, snapshot
 from grainlaw.validation.grains.observation import Observation
 from grainlaw.validation.grains.observe import Setting, observe
 from grainlaw.validation.grains.snapshot import GrainSnapshot
-from grainlaw.validation.reference.reference_set import Ensemble
+from grainlaw.validation.reference.reference_set import Ensemble, ReferenceSet
 from grainlaw.validation.scenes import advance
 
-FLOOR_FRICTION = 0.7
+# Of glued grains, and of the contacts of all grains.
+ROUGH_FRICTION = 0.7
 # The surface next to the sides is rounded by the kernel.
 SIDE_IN_WIDTHS = 2.0
 REACH = 1.8
@@ -42,9 +43,16 @@ class Column:
     reach: float
     times: tuple[float, ...]
     space: Space
+    floor_friction: float = ROUGH_FRICTION
 
 
-def column_of(ensemble: Ensemble) -> Column:
+def flat_friction(reference: ReferenceSet) -> float:
+    """Friction of a flat plane under shear of the grains, the mean over the rates; that of the contacts if unknown."""
+    rows = reference.test("wall_shear")
+    return float(np.mean([row["mu"] for row in rows])) if rows else ROUGH_FRICTION
+
+
+def column_of(ensemble: Ensemble, floor_friction: float = ROUGH_FRICTION) -> Column:
     """The mean column of all runs of a case; its density is that with which the mass is the same."""
     first = ensemble.runs[0].description
     diameter = float(np.mean([run.description["kernel_width"] for run in ensemble.runs]))
@@ -72,6 +80,7 @@ def column_of(ensemble: Ensemble) -> Column:
         reach=REACH * float(max(reaches)),
         times=tuple(found for found in longest.times.tolist() if found <= ensemble.end + 1e-9),
         space=ensemble.space,
+        floor_friction=floor_friction,
     )
 
 
@@ -89,7 +98,7 @@ def column_scene(column: Column, law: str, parameters: dict[str, float], cell_si
         "title": f"DEM column, {law}",
         "gravity": [0.0, -column.gravity],
         "grid": {"cell_size": cell_size, "upper": [float(length) for length in upper]},
-        "boundary": {"bottom": {"kind": "friction", "coefficient": FLOOR_FRICTION}},
+        "boundary": {"bottom": {"kind": "friction", "coefficient": column.floor_friction}},
         "time": {"end": column.times[-1]},
         "material": {law: parameters},
         "body": [

@@ -10,7 +10,7 @@ from typing import Any
 from grainlaw.materials import InputError, SimulationError, get_material
 from grainlaw.materials.compilation import pointwise_law
 from grainlaw.mpm_core.kernels.sources import CORE_MARK
-from grainlaw.validation.dem.judging.column import Column, column_of, column_scene, observed_column
+from grainlaw.validation.dem.judging.column import ROUGH_FRICTION, Column, column_of, column_scene, observed_column
 from grainlaw.validation.dem.judging.fitted_laws import FittedLaw
 from grainlaw.validation.dem.judging.variants import Variant, varied
 from grainlaw.validation.grains.distance import Comparison, Verdict, compare
@@ -49,9 +49,9 @@ class Bench:
     cell_size: float
     announce: Announce = field(default=lambda text: None)
 
-    def judge(self, law: FittedLaw, ensemble: Ensemble) -> Judgement:
-        """A law on a column of grains."""
-        column = column_of(ensemble)
+    def judge(self, law: FittedLaw, ensemble: Ensemble, floor_friction: float = ROUGH_FRICTION) -> Judgement:
+        """A law on a column of grains, above a floor with this friction."""
+        column = column_of(ensemble, floor_friction)
         scene = column_scene(column, law.judged.law, law.parameters, self.cell_size)
         return self._judged(law.judged.title, scene, column, ensemble, law.judged.law)
 

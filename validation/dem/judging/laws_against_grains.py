@@ -8,7 +8,7 @@ from pathlib import Path
 from grainlaw.materials import InputError, SimulationError, get_material
 from grainlaw.validation.case import Effort, Evidence
 from grainlaw.validation.cases.collapses import aluminium_bars
-from grainlaw.validation.dem.judging.column import column_of
+from grainlaw.validation.dem.judging.column import column_of, flat_friction
 from grainlaw.validation.dem.judging.element_verdicts import ElementVerdict, element_verdict
 from grainlaw.validation.dem.judging.fitted_laws import FittedLaw, JudgedLaw, fitted
 from grainlaw.validation.dem.judging.fitting_data import write_data
@@ -18,7 +18,9 @@ from grainlaw.validation.dem.judging.variants import CONTROLS, LIMITS, Variant
 from grainlaw.validation.grains.distance import Verdict
 from grainlaw.validation.reference.reference_set import Ensemble, ReferenceSet, Scatter, scatter
 
-FLOOR = "glued"
+FLOOR, FLAT = "glued", "flat"
+# The laws that are run on flat floors too.
+ON_FLAT_FLOORS = ("mu_i_lc", "mu_i_phi_i", "mu_i_state")
 # The column on which controls and limits are run, and the only one of a quick report.
 MIDDLE_ASPECT_RATIO = 2.0
 CELL_SIZE = {Effort.QUICK: 0.0125, Effort.FULL: 0.00625}
@@ -33,6 +35,8 @@ class Report:
     unfitted    what kept a law from being fitted, by its title
     elements    each law in the element tests
     judgements  one for each law and column
+    flat        some laws on flat floors, with the friction of the plane that plane shear over it shows
+    flat_friction  that friction
     controls    deliberate mistakes, which must be noticed
     limits      laws with one thing changed
     experiment  aluminium bars, against their published deposit; None in a quick report
@@ -46,6 +50,8 @@ class Report:
     unfitted: dict[str, str]
     elements: list[ElementVerdict]
     judgements: list[Judgement]
+    flat: list[Judgement]
+    flat_friction: float
     controls: list[Judgement]
     limits: list[Judgement]
     experiment: Evidence | None
@@ -55,9 +61,14 @@ class Report:
         """The deliberate mistakes that were not noticed; one that could not be run was not."""
         return [found for found in self.controls if not _noticed(found)]
 
+    @property
+    def flat_columns(self) -> list[Ensemble]:
+        """The columns on flat floors."""
+        return list({found.ensemble.case: found.ensemble for found in self.flat}.values())
+
     def of_column(self, ensemble: Ensemble) -> list[Judgement]:
         """The judgements on one column."""
-        return [found for found in self.judgements if found.ensemble is ensemble]
+        return [found for found in (*self.judgements, *self.flat) if found.ensemble is ensemble]
 
 
 def make_report(reference: ReferenceSet, folder: Path, effort: Effort, announce: Announce) -> Report:
@@ -74,6 +85,8 @@ def make_report(reference: ReferenceSet, folder: Path, effort: Effort, announce:
         raise InputError(f"no law could be fitted: {'; '.join(unfitted.values())}")
     bench = Bench(folder, CELL_SIZE[effort], announce)
     judged_columns = [middle] if is_quick else [*columns, *reference.cylinders(FLOOR)]
+    flat_columns = [] if is_quick else reference.columns(FLAT)
+    plane = flat_friction(reference)
     return Report(
         effort=effort,
         cell_size=bench.cell_size,
@@ -83,6 +96,13 @@ def make_report(reference: ReferenceSet, folder: Path, effort: Effort, announce:
         unfitted=unfitted,
         elements=[element_verdict(law, folder / DATA) for law in laws],
         judgements=[bench.judge(law, ensemble) for ensemble in judged_columns for law in laws],
+        flat=[
+            bench.judge(law, ensemble, plane)
+            for ensemble in flat_columns
+            for law in laws
+            if law.judged.law in ON_FLAT_FLOORS
+        ],
+        flat_friction=plane,
         controls=_varied(bench, reference, laws, [middle] if is_quick else columns, CONTROLS),
         limits=[] if is_quick else _varied(bench, reference, laws, columns, LIMITS),
         experiment=None if is_quick else aluminium_bars.measure(Effort.FULL),
