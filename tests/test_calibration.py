@@ -12,6 +12,7 @@ from grainlaw import materials
 from grainlaw.materials import InputError, get_material
 from grainlaw.materials.calibration.findings import Findings
 from grainlaw.materials.calibration.fit import calibrate, fit_to_data
+from grainlaw.materials.calibration.told_by import told_by
 from grainlaw.plugins.mu_i.friction import friction_of_inertial_number
 from grainlaw.validation.cases.point.cam_clay_solutions import EXAMPLE
 
@@ -122,6 +123,30 @@ def test_intervals_are_those_of_linear_regression():
         assert estimate.determined
     correlation = covariance[0, 1] / np.sqrt(covariance[0, 0] * covariance[1, 1])
     assert found.correlation[0, 1] == pytest.approx(correlation, rel=1e-4)
+
+
+def test_a_file_alone_tells_what_its_rows_say(tmp_path):
+    """The slowest shear and the rest: of the linear mu(I), the information of a file is the sum of its own squares."""
+    lines = SHEAR_DATA.read_text().splitlines()
+    head = [line for line in lines if not line[0].isdigit()]
+    rows = [line for line in lines if line[0].isdigit()]
+    for name, part in (("fast.csv", rows[:4]), ("slow.csv", rows[4:])):
+        (tmp_path / name).write_text("\n".join([*head, *part]) + "\n")
+    fit = calibrate(
+        "mu_i_lc",
+        [tmp_path / "slow.csv", tmp_path / "fast.csv"],
+        ["static_friction", "dynamic_friction"],
+        {"inertial_number_constant": 0.15},
+    )
+    found = {(told.name, told.file): told for told in told_by(Findings(fit), fit.model)}
+    for data in fit.model.data:
+        (friction,) = data.measured
+        share = np.array([friction_of_inertial_number(number, 0.0, 1.0, 0.15) for number in 0.5 * data.abscissa])
+        half_width = 1.959964 / np.linalg.norm((1.0 - share) / friction.standard_errors)
+        told = found["static_friction", data.file]
+        assert told.upper - told.lower == pytest.approx(2.0 * half_width, rel=1e-3)
+    assert ("dynamic_friction", "slow.csv") not in found
+    assert ("dynamic_friction", "fast.csv") in found
 
 
 def test_dem_shear_gives_the_known_friction_and_says_that_the_rest_is_undetermined():

@@ -12,6 +12,7 @@ from grainlaw.materials import InputError
 
 if TYPE_CHECKING:
     from grainlaw.materials.calibration.findings import Findings
+    from grainlaw.materials.calibration.fit import ElementFit
     from grainlaw.studies.scene_fit import SceneFit
 
 
@@ -107,6 +108,8 @@ def calibrate(
     of_tests = fitted_to(law, files, fit or (), fixed, parameters)
     findings = Findings(of_tests)
     _print_findings(findings)
+    if len({found.file for found in of_tests.model.data}) > 1:
+        _print_told(findings, of_tests)
     if out is not None:
         from grainlaw.materials.calibration.figures import draw
         from grainlaw.materials.calibration.files import write_files
@@ -191,3 +194,15 @@ def _print_findings(findings: "Findings") -> None:
         typer.echo(f"scatter about the law: {(findings.misfit / freedom) ** 0.5:.3g} of the size of the data")
     for remark in findings.remarks:
         typer.echo(f"note: {remark}")
+
+
+def _print_told(findings: "Findings", fit: "ElementFit") -> None:
+    """Which file determines which parameter."""
+    from grainlaw.materials.calibration.told_by import told_by
+
+    typer.echo("told by one file alone, the other parameters held:")
+    told = told_by(findings, fit.model)
+    width = max(len(found.name) for found in findings.estimates)
+    for estimate in findings.estimates:
+        files = [f"{one.file} [{one.lower:.4g}, {one.upper:.4g}]" for one in told if one.name == estimate.name]
+        typer.echo(f"  {estimate.name:<{width}}   {'; '.join(files) or 'none'}")

@@ -52,6 +52,7 @@ class DataSet:
     control     name of the column that drives the test
     abscissa    its values, shape (rows,)
     statements  settings of the test and parameters of the law that the file states, by name
+    file        its name
     followed    if the control is time, the driven values of the law at these times, shape (rows,)
     """
 
@@ -61,6 +62,7 @@ class DataSet:
     abscissa: Array
     statements: dict[str, float]
     measured: tuple[Measured, ...]
+    file: str = ""
     followed: Array | None = None
 
     def driven(self, abscissa: Array) -> Array:
@@ -162,14 +164,14 @@ def _data_set(
     abscissa = _filled_column(table, control, rows)
     if not experiment.follows:
         measured = _measured(table, experiment, [control, *grouping], rows)
-        return DataSet(label, experiment, control, abscissa, statements, measured)
+        return DataSet(label, experiment, control, abscissa, statements, measured, table.path.name)
     name = _control(table, experiment, experiment.follows)
     measured = _measured(table, experiment, [control, name, *grouping], rows)
     falls = ~(np.diff(abscissa, prepend=0.0) > 0.0)
     if np.any(falls):
         raise table.fault(f"{control} must rise from row to row, from above 0", rows[int(np.argmax(falls))][0])
     followed = experiment.follows[name].driven(_filled_column(table, name, rows))
-    return DataSet(label, experiment, control, abscissa, statements, measured, followed)
+    return DataSet(label, experiment, control, abscissa, statements, measured, table.path.name, followed)
 
 
 def _stated_number(table: _Table, name: str, text: str) -> float:

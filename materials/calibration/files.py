@@ -2,12 +2,15 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from grainlaw.materials.atomic import write_text
 from grainlaw.materials.calibration.findings import Findings
+from grainlaw.materials.calibration.fit import ElementFit
 from grainlaw.materials.calibration.parameter_file import parameter_file
+from grainlaw.materials.calibration.told_by import told_by
 
 PARAMETERS, RESULT, PICTURE = "parameters.toml", "calibration.json", "fit.png"
 
@@ -48,5 +51,6 @@ def content(findings: Findings) -> dict[str, Any]:
             for name, value in fit.values.items()
             if name not in {found.name for found in findings.estimates}
         },
+        "told_by": [asdict(found) for found in told_by(findings, fit.model)] if isinstance(fit, ElementFit) else [],
         "remarks": list(findings.remarks),
     }

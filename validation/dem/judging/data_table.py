@@ -37,8 +37,17 @@ def friction_of_mean_pressure(row: dict[str, float]) -> tuple[float, float]:
     return friction, row["se_mu"] * friction / row["mu"]
 
 
-def means(rows: Rows, name: str) -> tuple[Array, Array]:
-    """Mean over the packings of a quantity row by row, and its standard error, one for all rows, from their scatter."""
-    values = np.array([[row[name] for row in packing] for packing in by_seed(rows)])
-    scatter = float(np.sqrt(np.mean(values.var(axis=0, ddof=1)) / len(values))) if len(values) > 1 else math.nan
-    return values.mean(axis=0), np.full(values.shape[1], scatter)
+def mean_and_error(values: Array) -> tuple[Array, Array]:
+    """Mean over packings of values (packings, rows) and its standard error, each (rows,).
+
+    Three packings and more tell the error row by row, two one error for all rows, and one by the scatter of its
+    neighbouring rows.
+    """
+    packings, rows = values.shape
+    if packings > 2:
+        errors = values.std(axis=0, ddof=1)
+    elif packings == 2:
+        errors = np.full(rows, np.sqrt(np.mean(values.var(axis=0, ddof=1))))
+    else:
+        errors = np.full(rows, np.sqrt(0.5 * np.mean(np.diff(values[0]) ** 2)))
+    return values.mean(axis=0), errors / np.sqrt(packings)

@@ -17,6 +17,7 @@ from grainlaw.validation.dem.judging.data_table import (
     by_seed,
     data_table,
     friction_of_mean_pressure,
+    mean_and_error,
 )
 from grainlaw.validation.dem.judging.history_data import LOOSE_FILE, MEDIUM_FILE, history_tables
 from grainlaw.validation.reference.reference_set import ReferenceSet, Rows
@@ -86,10 +87,9 @@ def _shear_table(rows: Rows, statements: dict[str, str], with_fraction: bool) ->
 def _start_table(rows: Rows, statements: dict[str, str], strains: np.ndarray) -> str:
     """Means over the packings at common strains, with standard errors from their scatter."""
     seeds = by_seed(rows)
-    measured = []
+    measured: list[np.ndarray] = []
     for name in ("tau_over_p3", "phi"):
-        values = np.array([_at_strains(seed, name, strains) for seed in seeds])
-        measured += [values.mean(axis=0), values.std(axis=0, ddof=1) / np.sqrt(len(seeds))]
+        measured += mean_and_error(np.array([_at_strains(seed, name, strains) for seed in seeds]))
     sheared = [row for row in rows if row["strain"] <= strains[-1]]
     density = float(statements["grain_density"]) * np.mean([seed[0]["phi"] for seed in seeds])
     # The law's own rate is half of the engineering one.

@@ -16,7 +16,7 @@ from grainlaw.validation.dem.judging.data_table import (
     by_seed,
     data_table,
     friction_of_mean_pressure,
-    means,
+    mean_and_error,
 )
 from grainlaw.validation.reference.reference_set import ReferenceSet, Rows
 
@@ -49,19 +49,22 @@ def history_tables(reference: ReferenceSet, grains: dict[str, str]) -> dict[str,
 
 def _history_table(rows: Rows, grains: dict[str, str], stages: tuple[int, ...]) -> str:
     """Shear over time; friction and solid fraction count in some stages, the others lead there."""
-    first = by_seed(rows)[0]
-    counted = np.array([row["stage"] in stages for row in first])
-    measured = []
-    for name in ("tau_over_p3", "phi"):
-        measured += list(means(rows, name))
-    time, strain = (means(rows, name)[0] for name in ("time", "strain"))
+    packings = by_seed(rows)
+    # All runs of a case have their blocks at the same times.
+    of_packings = {name: np.array([[row[name] for row in own] for own in packings]) for name in packings[0][0]}
+    counted = np.isin(of_packings["stage"][0], stages)
+    measured = [*mean_and_error(of_packings["tau_over_p3"]), *mean_and_error(of_packings["phi"])]
     own = {
         "test": "shear-history",
         "held_normal_stress": f"{np.mean([row['szz'] for row in rows]):.6g}",
         "density": f"{float(grains['grain_density']) * measured[2][0]:.6g}",
         "grain_density": grains["grain_density"],
     }
-    columns = [time, strain, *(np.where(counted, values, math.nan) for values in measured)]
+    columns = [
+        of_packings["time"][0],
+        of_packings["strain"].mean(axis=0),
+        *(np.where(counted, values, math.nan) for values in measured),
+    ]
     return data_table(own, (TIME, STRAIN, *FRICTION, *FRACTION), np.column_stack(columns).tolist())
 
 
