@@ -87,12 +87,13 @@ SHEAR_STAGES = stages(
     (0.004, 0.4, 1.8),
 )
 
-# Steady at first; then the rate drops to a tenth, returns, rises, and drops to less than a fortieth.
+# Steady at first; then the rate drops to a tenth, returns, rises, and drops to less than a fortieth. The wall bounces
+# every 0.035 s after a jump: blocks of fast stages are as long, and the fastest is ten times as long.
 RATE_STEPS = (
     ShearStep(nominal_inertial_number=0.14, strain=4.0, block_strain=0.5),
     ShearStep(nominal_inertial_number=0.014, strain=0.6, block_strain=0.02),
-    ShearStep(nominal_inertial_number=0.14, strain=2.0, block_strain=0.05),
-    ShearStep(nominal_inertial_number=0.6, strain=6.0, block_strain=0.25),
+    ShearStep(nominal_inertial_number=0.14, strain=4.0, block_strain=0.5),
+    ShearStep(nominal_inertial_number=0.6, strain=20.0, block_strain=2.0),
     ShearStep(nominal_inertial_number=0.014, strain=0.6, block_strain=0.02),
 )
 REVERSAL = (
