@@ -9,6 +9,7 @@ from grainlaw.validation.dem.judging.laws_against_grains import FLAT, Report
 from grainlaw.validation.grains.distance import PROFILE_BAND
 from grainlaw.validation.reference.reference_set import Ensemble, Rows
 from grainlaw.validation.report.case_report import measurement_table, pictures
+from grainlaw.validation.report.element_figure import element_figure
 from grainlaw.validation.report.grain_figures import (
     distance_figure,
     profile_figure,
@@ -63,7 +64,7 @@ def sections(report: Report, shear: Rows) -> list[Section]:
         Section(scatter.title, tables=(scatter,)),
         Section("Verdicts", tables=(summary_table(report),)),
         _fits(report, shear),
-        Section("Element tests", tables=(element_table(report.elements),)),
+        Section("Element tests", tables=(element_table(report.elements),), figures=_element_pictures(report)),
         *(_column(report, ensemble) for ensemble in (*report.columns, *report.flat_columns)),
         Section(controls.title, (_controls_said(report),), (controls,)),
     ]
@@ -106,6 +107,11 @@ def _experiment(found: Evidence) -> Section:
     table = measurement_table(found.measurements, note=case.norm)
     command = f"grainlaw validate {case.name} --out DIR"
     return Section("A published experiment: aluminium bars", paragraphs, (table,), pictures(case, found), command)
+
+
+def _element_pictures(report: Report) -> tuple[Picture, ...]:
+    image = element_figure(report.elements)
+    return (Picture(image, "Element tests: grains, dots, and the fitted laws."),) if image else ()
 
 
 def _column(report: Report, ensemble: Ensemble) -> Section:

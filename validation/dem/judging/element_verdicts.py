@@ -26,6 +26,7 @@ from grainlaw.validation.dem.judging.history_data import (
     RATE_DROP_FILE,
     RATE_JUMP_FILE,
     REVERSAL_FILE,
+    SLOWING_FILE,
     TRIAXIAL_FILE,
 )
 from grainlaw.validation.grains.distance import Distance
@@ -50,26 +51,41 @@ RATIO, VOLUME = "stress_ratio", "volumetric_strain"
 
 
 @dataclass(frozen=True)
+class Followed:
+    """A quantity along an element test: of the grains and of the law at values of the driven column, (rows,) each."""
+
+    test: str
+    control: str
+    quantity: str
+    abscissa: Array
+    grains: Array
+    of_law: Array
+
+
+@dataclass(frozen=True)
 class ElementVerdict:
     """A law in the element tests of the grains: what each test measures, or why it could not be followed."""
 
     title: str
     distances: tuple[Distance, ...]
     failures: tuple[str, ...]
+    curves: tuple[Followed, ...]
 
 
 def element_verdict(law: FittedLaw, folder: Path) -> ElementVerdict:
     """A fitted law in the tests whose data lie in a folder; a test without data is left out."""
     distances: list[Distance] = []
+    curves: list[Followed] = []
     failures = []
     for name, measured in MEASURED.items():
         if not (folder / name).is_file():
             continue
         try:
             distances += measured(law, folder / name)
+            curves += _curves(law, folder / name, DRAWN[name]) if name in DRAWN else []
         except (InputError, SimulationError) as error:
             failures.append(str(error))
-    return ElementVerdict(law.judged.title, tuple(distances), tuple(failures))
+    return ElementVerdict(law.judged.title, tuple(distances), tuple(failures), tuple(curves))
 
 
 def _answers(law: FittedLaw, data: DataSet, abscissa: Array) -> Answers:
@@ -81,6 +97,17 @@ def _answers(law: FittedLaw, data: DataSet, abscissa: Array) -> Answers:
 
 def _data(law: FittedLaw, path: Path) -> list[DataSet]:
     return read_data(path, get_material(law.judged.law))
+
+
+def _curves(law: FittedLaw, path: Path, test: str) -> list[Followed]:
+    (data,) = _data(law, path)
+    of_law = _answers(law, data, data.abscissa)
+    curves = []
+    for found in data.measured:
+        known = np.isfinite(found.values)
+        columns = (values[known] for values in (data.abscissa, found.values, of_law[found.name]))
+        curves.append(Followed(test, data.control, found.name, *columns))
+    return curves
 
 
 def _start_of_shear(law: FittedLaw, path: Path) -> list[Distance]:
@@ -183,6 +210,17 @@ MEASURED: dict[str, Callable[[FittedLaw, Path], list[Distance]]] = {
     LOOSE_FILE: partial(_followed, name="from loose"),
     RATE_DROP_FILE: partial(_followed, name="rate drop"),
     RATE_JUMP_FILE: partial(_followed, name="rate jump"),
+    SLOWING_FILE: partial(_followed, name="fast flow slowed"),
     REVERSAL_FILE: partial(_followed, name="reversal"),
     TRIAXIAL_FILE: _triaxial,
+}
+# Tests that are drawn, with their titles.
+DRAWN = {
+    PEAK_FILE: "from dense",
+    MEDIUM_FILE: "from medium",
+    LOOSE_FILE: "from loose",
+    TRIAXIAL_FILE: "triaxial compression",
+    RATE_DROP_FILE: "rate drop",
+    SLOWING_FILE: "fast flow slowed",
+    REVERSAL_FILE: "reversal",
 }

@@ -21,10 +21,11 @@ from grainlaw.validation.dem.judging.data_table import (
 from grainlaw.validation.reference.reference_set import ReferenceSet, Rows
 
 MEDIUM_FILE, LOOSE_FILE = "shear_start_medium.csv", "shear_start_loose.csv"
-RATE_DROP_FILE, RATE_JUMP_FILE, REVERSAL_FILE = "rate_drop.csv", "rate_jump.csv", "reversal.csv"
+RATE_DROP_FILE, RATE_JUMP_FILE, SLOWING_FILE = "rate_drop.csv", "rate_jump.csv", "slowing.csv"
+REVERSAL_FILE = "reversal.csv"
 PRESSURE_FILE, TRIAXIAL_FILE = "pressures.csv", "triaxial.csv"
 # Stages of the runs of shear at several rates.
-DROPS, JUMPS, TURNED = (1, 4), (2, 3), (2,)
+DROP, JUMPS, SLOWING, TURNED = (1,), (2, 3), (4,), (2,)
 # Axial strains, evenly spaced so that the rate is one.
 AXIAL_STRAINS = np.linspace(0.0075, 0.18, 24)
 TRIAXIAL_STEP = 1e-4
@@ -35,7 +36,8 @@ def history_tables(reference: ReferenceSet, grains: dict[str, str]) -> dict[str,
     texts = {}
     steps, turned, triaxial = (reference.test(name) for name in ("shear_rate_steps", "shear_reversal", "triaxial"))
     if steps:
-        texts[RATE_DROP_FILE] = _history_table(steps, grains, DROPS)
+        texts[RATE_DROP_FILE] = _history_table(steps, grains, DROP)
+        texts[SLOWING_FILE] = _history_table(steps, grains, SLOWING)
         texts[RATE_JUMP_FILE] = _history_table(steps, grains, JUMPS)
     if turned:
         texts[REVERSAL_FILE] = _history_table(turned, grains, TURNED)
