@@ -8,13 +8,26 @@ from grainlaw.materials.calibration.model import ForwardModel, answer
 from grainlaw.validation.dem.judging.element_verdicts import element_verdict
 from grainlaw.validation.dem.judging.fitted_laws import FittedLaw
 from grainlaw.validation.dem.judging.fitting_data import CYCLE_FILE, FLOW_FILE, PEAK_FILE, write_data
+from grainlaw.validation.dem.judging.history_data import (
+    LOOSE_FILE,
+    MEDIUM_FILE,
+    RATE_DROP_FILE,
+    RATE_JUMP_FILE,
+    REVERSAL_FILE,
+    SLOWING_FILE,
+    TRIAXIAL_FILE,
+)
 from grainlaw.validation.dem.judging.judged_laws import JUDGED_LAWS
 from grainlaw.validation.grains.distance import Verdict
 from grainlaw.validation.reference.reference_set import read_reference_set
 from grainlaw.validation.report.grain_tables import element_table
 
 START = ("peak friction", "strain of the peak", "friction after the peak", "dilation")
-EVERY = (*START, "compression", "steady friction", "steady solid fraction")
+STEADY = ("steady friction", "steady solid fraction")
+PRESSED = ("0.5 and 50 kPa, steady friction", "0.5 and 50 kPa, steady solid fraction")
+HISTORIES = ("from medium", "from loose", "rate drop", "rate jump", "fast flow slowed", "reversal")
+TRIAXIAL = ("triaxial peak", "triaxial q/p after the peak", "triaxial dilation")
+MEANS = (MEDIUM_FILE, LOOSE_FILE, RATE_DROP_FILE, RATE_JUMP_FILE, SLOWING_FILE, REVERSAL_FILE)
 
 
 @pytest.fixture(scope="module")
@@ -35,34 +48,57 @@ def verdicts(found):
 
 
 def test_the_unified_law_in_all_tests(folder):
+    """What it was fitted to, and what it was not."""
     found = element_verdict(fitted(), folder)
-    assert tuple(verdicts(found)) == EVERY
-    beyond = [name for name, verdict in verdicts(found).items() if verdict is not Verdict.INDISTINGUISHABLE]
-    assert beyond == ["friction after the peak"]
-    row = element_table([found]).rows[0]
-    assert row[-2:] == ("6 of 7", "")
+    names = [f"{test}: {what}" for test in HISTORIES for what in ("friction", "packing")]
+    assert set(verdicts(found)) == {*START, "compression", *STEADY, *PRESSED, *names, *TRIAXIAL}
+    within = {name for name, verdict in verdicts(found).items() if verdict is Verdict.INDISTINGUISHABLE}
+    assert {*START, "compression", *STEADY} - within == {"friction after the peak"}
+    beyond = {name for name, verdict in verdicts(found).items() if verdict is Verdict.DIFFERS}
+    assert {"reversal: friction", "fast flow slowed: friction", "triaxial q/p after the peak"} <= beyond
+    table = element_table([found])
+    assert table.columns == ("what", "band", "mu(I), state")
+    assert table.rows[-1] == ("within", "", f"{len(within)} of {len(verdicts(found))}")
+    (row,) = (row for row in table.rows if row[0] == "friction after the peak")
+    assert row[2].endswith("% ~")
 
 
 def test_a_wrong_law_is_told(folder):
     found = verdicts(element_verdict(fitted(dilatancy_coefficient=0.0), folder))
-    assert found["dilation"] is found["peak friction"] is Verdict.DIFFERS
+    assert found["dilation"] is found["peak friction"] is found["triaxial dilation"] is Verdict.DIFFERS
     assert verdicts(element_verdict(fitted(stiffness=8e6), folder))["compression"] is Verdict.DIFFERS
-    slippery = fitted(static_friction=0.4, dynamic_friction=0.6)
-    assert verdicts(element_verdict(slippery, folder))["steady friction"] is Verdict.DIFFERS
+    slippery = verdicts(element_verdict(fitted(static_friction=0.4, dynamic_friction=0.6), folder))
+    assert slippery["steady friction"] is slippery["rate drop: friction"] is Verdict.DIFFERS
+    assert slippery["0.5 and 50 kPa, steady friction"] is slippery["from medium: friction"] is Verdict.DIFFERS
+    same_at_all_rates = verdicts(element_verdict(fitted(dilation_slope=0.0), folder))
+    assert same_at_all_rates["rate jump: packing"] is not Verdict.INDISTINGUISHABLE
+
+
+def with_own_answers(path, law, parameters, into):
+    """The data file with the law's own answers in place of what was measured; errors and gaps stay."""
+    lines = path.read_text().splitlines()
+    start = next(number for number, line in enumerate(lines) if not line.startswith("#"))
+    names = [name.split(" ")[0] for name in lines[start].split(",")]
+    rows = [line.split(",") for line in lines[start + 1 :]]
+    (data,) = read_data(path, law)
+    result = ForwardModel(law, (data,)).history(data, parameters, data.abscissa)
+    for measured in data.measured:
+        column = names.index(measured.name)
+        for row, value in zip(rows, answer(result, measured), strict=True):
+            row[column] = row[column] and f"{value:.9g}"
+    (into / path.name).write_text("\n".join([*lines[: start + 1], *(",".join(row) for row in rows)]) + "\n")
 
 
 def test_own_answers_are_met(folder, tmp_path):
-    """The law's own friction and solid fraction in place of those of the grains."""
-    law = get_material("mu_i_state")
-    (data,) = read_data(folder / PEAK_FILE, law)
-    result = ForwardModel(law, (data,)).history(data, fitted().parameters, data.abscissa)
-    friction, fraction = (answer(result, measured) for measured in data.measured)
-    head = [line for line in (folder / PEAK_FILE).read_text().splitlines() if not line[0].isdigit()]
-    rows = [f"{e:g},{m:.9g},0.01,{f:.9g},0.001" for e, m, f in zip(data.abscissa, friction, fraction, strict=True)]
-    (tmp_path / PEAK_FILE).write_text("\n".join([*head, *rows]) + "\n")
+    """The law's own friction and packing in place of those of the grains."""
+    for name in (PEAK_FILE, TRIAXIAL_FILE, *MEANS):
+        with_own_answers(folder / name, get_material("mu_i_state"), fitted().parameters, tmp_path)
     found = element_verdict(fitted(), tmp_path)
-    assert tuple(verdicts(found)) == START
-    assert [abs(one.distance) < 1e-3 for one in found.distances] == [True] * 4
+    # The law's peak between two rows is a little higher than at the rows.
+    errors = {one.name: abs(one.distance) for one in found.distances}
+    assert len(errors) == len(START) + len(TRIAXIAL) + 2 * len(MEANS)
+    assert max(errors.values()) < 1e-3
+    assert [curve.test for curve in found.curves][:2] == ["from dense", "from dense"]
 
 
 def test_a_test_that_cannot_be_followed_is_named(folder, tmp_path):
