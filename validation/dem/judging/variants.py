@@ -99,7 +99,12 @@ LIMITS = (
     _of_state("a = 2, twice the cell", "resolution", 2.0, cell_factor=2.0),
     *(_of_state(f"a = {ratio:g}, half the cell", "resolution", ratio, cell_factor=0.5) for ratio in ASPECT_RATIOS),
     *(
-        _of_state(f"a = {ratio:g}, flat floor", "grains that roll on the floor", ratio, grains="flat")
+        _of_state(
+            f"a = {ratio:g}, flat floor",
+            "the friction of the contacts, 0.7, for that of the plane",
+            ratio,
+            grains="flat",
+        )
         for ratio in ASPECT_RATIOS
     ),
     # The modulus of a packing grows as that of its grains.
