@@ -26,12 +26,33 @@ from grainlaw.validation.dem.judging.fitting_data import (
     START_STRAINS,
     write_data,
 )
+from grainlaw.validation.dem.judging.history_data import (
+    LOOSE_FILE,
+    MEDIUM_FILE,
+    PRESSURE_FILE,
+    RATE_DROP_FILE,
+    RATE_JUMP_FILE,
+    REVERSAL_FILE,
+    SLOWING_FILE,
+    TRIAXIAL_FILE,
+)
 from grainlaw.validation.dem.judging.judged_laws import JUDGED_LAWS
 from grainlaw.validation.dem.judging.variants import CONTROLS, LIMITS, varied
 from grainlaw.validation.dem.runs import Run, runs_of
 from grainlaw.validation.reference.reference_set import REFERENCE, read_reference_set
 
 LAW = "mu_i_phi_i"
+# Tests of grains to which no law is fitted.
+JUDGED_ONLY = (
+    MEDIUM_FILE,
+    LOOSE_FILE,
+    RATE_DROP_FILE,
+    RATE_JUMP_FILE,
+    SLOWING_FILE,
+    REVERSAL_FILE,
+    PRESSURE_FILE,
+    TRIAXIAL_FILE,
+)
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +83,7 @@ def test_no_granular_law_is_left_unjudged():
 
 def test_shipped_data_of_grains_are_those_of_the_comparison(folder):
     shipped = {"grains_steady_shear": FLOW_FILE, "grains_shear_start": PEAK_FILE, "grains_compression": CYCLE_FILE}
+    shipped |= {f"grains_{name.removesuffix('.csv')}": name for name in JUDGED_ONLY}
     for name, file in shipped.items():
         assert data_file(Path(name)).read_text() == (folder / file).read_text()
 

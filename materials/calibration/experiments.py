@@ -191,7 +191,10 @@ def steady_shear(specimen: Specimen, settings: SteadyShearSettings, numbers: Arr
 
 
 def shear_start(specimen: Specimen, settings: ShearStartSettings, strains: Array) -> ElementResult:
-    """The point at each strain, sheared from an isotropic state; the widest spacing of strains at the inertial number."""
+    """The point at each strain, sheared from an isotropic state, in steps of equal duration.
+
+    The inertial number is that of the widest spacing of the strains.
+    """
     start = _pressed(specimen, settings)
     rate = settings.held_inertial_number / _number_of_unit_rate(settings)
     changes = np.diff(strains, prepend=0.0)

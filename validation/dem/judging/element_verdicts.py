@@ -205,7 +205,7 @@ MEASURED: dict[str, Callable[[FittedLaw, Path], list[Distance]]] = {
     PEAK_FILE: _start_of_shear,
     CYCLE_FILE: _compression,
     FLOW_FILE: _steady_shear,
-    PRESSURE_FILE: partial(_steady_shear, name="0.5 and 50 kPa, steady"),
+    PRESSURE_FILE: partial(_steady_shear, name="other pressures: steady"),
     MEDIUM_FILE: partial(_followed, name="from medium"),
     LOOSE_FILE: partial(_followed, name="from loose"),
     RATE_DROP_FILE: partial(_followed, name="rate drop"),
