@@ -24,7 +24,7 @@ from grainlaw.validation.report.grain_tables import element_table
 
 START = ("peak friction", "strain of the peak", "friction after the peak", "dilation")
 STEADY = ("steady friction", "steady solid fraction")
-PRESSED = ("other pressures: steady friction", "0.5 and 50 kPa, steady solid fraction")
+PRESSED = ("other pressures: steady friction", "other pressures: steady solid fraction")
 HISTORIES = ("from medium", "from loose", "rate drop", "rate jump", "fast flow slowed", "reversal")
 TRIAXIAL = ("triaxial peak", "triaxial q/p after the peak", "triaxial dilation")
 MEANS = (MEDIUM_FILE, LOOSE_FILE, RATE_DROP_FILE, RATE_JUMP_FILE, SLOWING_FILE, REVERSAL_FILE)

@@ -116,7 +116,9 @@ def summary_table(report: Report) -> Table:
 
 def element_table(found: Sequence[ElementVerdict]) -> Table:
     """One row for what an element test measures, one column for each law."""
-    bands = {one.name: one.band for verdict in found for one in verdict.distances}
+    # In the order of a law that says something in all tests.
+    fullest_first = sorted(found, key=lambda verdict: -len(verdict.distances))
+    bands = {one.name: one.band for verdict in fullest_first for one in verdict.distances}
     by_law = [{one.name: one for one in verdict.distances} for verdict in found]
     rows = [
         (name, "" if band is None else percent(band), *(_marked(law.get(name)) for law in by_law))
