@@ -17,7 +17,7 @@ from grainlaw.plugins import mu_i_phi_i
 from grainlaw.plugins.mu_i.consistent_flow import PARTED
 from grainlaw.validation.dem.batch import case_named
 from grainlaw.validation.dem.coverage import missing_runs, present_runs, seeds_told
-from grainlaw.validation.dem.judging.column import column_of, column_scene
+from grainlaw.validation.dem.judging.column import ROUGH_FRICTION, column_of, column_scene, flat_friction
 from grainlaw.validation.dem.judging.fitting_data import (
     CYCLE_FILE,
     FLOW_FILE,
@@ -154,3 +154,15 @@ def test_missing_runs_are_told():
     assert Run(case, "liggghts", 1).name in present_runs(REFERENCE)
     answer = CliRunner().invoke(app, ["dem", "list"])
     assert "not in the reference set" in answer.output.replace("\n", " ") or "reference" in answer.output
+
+
+def test_a_flat_floor_has_the_friction_that_shear_over_a_plane_shows():
+    """Below that of the contacts, since grains roll; glued floors keep the contacts' own."""
+    reference = read_reference_set()
+    friction = flat_friction(reference)
+    told = [row["tau_over_p3"] for row in reference.test("wall_shear")]
+    assert min(told) * 0.8 < friction < max(told) < ROUGH_FRICTION
+    (flat, *_), (glued, *_) = reference.columns("flat"), reference.columns("glued")
+    columns = column_of(flat, friction), column_of(glued)
+    floors = [column_scene(one, LAW, {}, 0.0125)["boundary"]["bottom"]["coefficient"] for one in columns]
+    assert floors == [friction, ROUGH_FRICTION]
