@@ -44,6 +44,7 @@ from grainlaw.mpm_core.stepping.time_step import (
     signal_bounds,
     strain_rates,
 )
+from grainlaw.mpm_core.thin_plates import ThinPlates
 
 # More than a run can ever take.
 MOST_STEPS = 1e12
@@ -82,6 +83,7 @@ class Simulation:
         self.walls = _walls(scene)
         self.obstacles = Obstacles(build_obstacles(scene), FreeRoom(self.grid, self.periodic_axes))
         check_start(scene, self.obstacles.all, bodies_at_start)
+        self.thin_plates = ThinPlates(self.obstacles.all, self.grid.cell_size)
         check_mouths(self.inflows.all, self.obstacles.all)
         self.body_force: BodyForce | None = None
         self.held_nodes = np.empty(0, np.int64)
@@ -295,6 +297,7 @@ class Simulation:
         for body in self.bodies:
             body.sort(self.grid, self.basis)
         self.drift = 0.0
+        self.thin_plates.look(self.time, self.obstacles.present, self.bodies)
         self.find_active_nodes()
 
     def _let_in(self) -> None:

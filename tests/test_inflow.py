@@ -4,8 +4,10 @@ import warnings
 
 import numpy as np
 import pytest
-from scenes_for_tests import MU_I_LC, changed, simulation
+from scenes_for_tests import MU_I_LC, changed, simulation, write_scene
+from typer.testing import CliRunner
 
+from grainlaw.cli.main import app
 from grainlaw.materials import InputError
 from grainlaw.materials.errors import InputWarning
 from grainlaw.mpm_core import Scene, run
@@ -125,6 +127,19 @@ def test_a_stream_falls_freely():
     ledger = case.ledger
     assert ledger.mass_in == pytest.approx(DENSITY * SPEED * 0.1 * 0.5, rel=1e-12)
     assert abs(ledger.numerical_dissipation) < 2e-3 * ledger.released
+
+
+def test_a_stream_that_stops_tells_where_its_energy_went(tmp_path):
+    scene = changed(FILLED, {"output.pictures": False})
+    told = []
+    for end in (0.1, 0.4):  # the stream still falls; it has met the floor
+        file = write_scene(tmp_path / "stream.toml", changed(scene, {"time.end": end}))
+        answer = CliRunner().invoke(app, ["run", str(file), "--out", str(tmp_path / f"{end:g}"), "--threads", "1"])
+        assert answer.exit_code == 0
+        told.append(
+            "of the energy released; transfers take it, most where loose material comes together" in answer.output
+        )
+    assert told == [False, True]
 
 
 def test_what_enters_finds_room_or_waits_and_says_so():

@@ -11,6 +11,9 @@ from grainlaw.cli.scene_options import SceneFile, SetValues, load_scene
 if TYPE_CHECKING:
     from grainlaw.mpm_core.output.summary import RunSummary
 
+# Share of the energy released above which the user is told what transfers took.
+LARGE_BALANCE_ERROR = 0.1
+
 
 def run(
     scene_file: SceneFile,
@@ -77,6 +80,11 @@ def _print_result(folder: Path, summary: "RunSummary", amount: str) -> None:
         f"{count} {name.removeprefix('points_').replace('_', ' ')}" for name, count in summary.limited.items()
     )
     typer.echo(f"points bounded instead of clipped: {counts}; energy balance error {summary.energy_balance_error:.2%}")
+    if summary.energy_balance_error > LARGE_BALANCE_ERROR:
+        typer.echo(
+            "  of the energy released; transfers take it, most where loose material comes together or a stream stops "
+            "(numerical_dissipation in history.csv)"
+        )
     for name in ("run.pvd", "run.vtkhdf", "history.csv", "summary.json"):
         if (folder / name).exists():
             typer.echo(f"  {folder / name}")

@@ -1,6 +1,5 @@
 """Building the obstacles of a scene, and what is wrong with where they are."""
 
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,7 +7,6 @@ import scipy
 from numpy.typing import NDArray
 
 from grainlaw.materials import InputError
-from grainlaw.materials.errors import InputWarning
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.obstacles.contact import distances
 from grainlaw.mpm_core.obstacles.motion import Along, Free, Motion, Steady, at_rest, in_3d
@@ -17,13 +15,12 @@ from grainlaw.mpm_core.scene.initial_state import spacing_of_points
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.scene.obstacle import FreeSection, MotionSection, ObstacleSection
 from grainlaw.mpm_core.scene.obstacle_surfaces import Placed, placed
+from grainlaw.mpm_core.thin_plates import ThinPlates
 
 Floats = NDArray[np.float64]
 
 # By how much of its size a point may lie in an obstacle at the start: corners of a lattice at an oblique surface.
 DEEPEST_START = 0.5
-# Cells that an obstacle has to be thick for material on its two sides not to share nodes.
-THICK = 3.0
 
 
 def build_obstacles(scene: Scene) -> list[Obstacle]:
@@ -101,7 +98,7 @@ def _refuse_outside(scene: Scene, number: int, obstacle: Obstacle) -> None:
 
 
 def check_start(scene: Scene, obstacles: Sequence[Obstacle], bodies: Sequence[Body]) -> None:
-    """Raises InputError for a body in an obstacle, and warns about obstacles too thin to part what is on both sides."""
+    """Raises InputError for a body in an obstacle, and for bodies on both sides of one too thin to part them."""
     for obstacle in obstacles:
         for section, body in zip(scene.body, bodies, strict=True):
             spacing = spacing_of_points(scene, section.points_per_cell)
@@ -113,15 +110,9 @@ def check_start(scene: Scene, obstacles: Sequence[Obstacle], bodies: Sequence[Bo
                     f"{body.name}: {inside.sum()} of {body.count} points lie inside obstacle '{obstacle.name}', "
                     f"the deepest at ({place})"
                 )
-        _warn_if_thin(scene, obstacle)
-
-
-def _warn_if_thin(scene: Scene, obstacle: Obstacle) -> None:
-    thickness, cell_size = obstacle.surface.thickness, scene.grid.cell_size
-    if not obstacle.hollow and thickness < THICK * cell_size:
-        warnings.warn(
-            f"{scene.source}: obstacle '{obstacle.name}' is {thickness:g} m thick, {thickness / cell_size:.2g} cells: "
-            f"material on both sides of it would drag one another along; with {THICK * cell_size:g} m it does not",
-            InputWarning,
-            stacklevel=2,
+    plates = ThinPlates(obstacles, scene.grid.cell_size)
+    for obstacle in plates.parting(bodies):
+        raise InputError(
+            f"obstacle.{obstacles.index(obstacle)}: {plates.described(obstacle)}: bodies on its two sides would share "
+            f"nodes and drag one another along; allowed: {plates.what_would_do(obstacle)}"
         )

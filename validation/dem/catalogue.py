@@ -14,6 +14,7 @@ from grainlaw.validation.dem.description import (
     ShearStage,
     ShearStep,
     ShearSteps,
+    SlotHopper,
     Triaxial,
     WallShear,
 )
@@ -53,6 +54,16 @@ def cylinder(aspect_ratio: float, radius: float) -> CylinderCollapse:
         radius=radius,
         floor="glued",
         end=CYLINDER_END_TIMES[aspect_ratio],
+        liggghts_seeds=TWO,
+    )
+
+
+def hopper(opening: float) -> SlotHopper:
+    """The silo with a slot of one width [m]."""
+    return SlotHopper(
+        name=f"hopper-w{opening:g}",
+        purpose=f"flat silo that empties through a slot of {opening:g} m",
+        opening=opening,
         liggghts_seeds=TWO,
     )
 
@@ -161,6 +172,7 @@ CASES: tuple[AnyCase, ...] = (
     cylinder(0.5, radius=0.27),
     cylinder(1, radius=0.225),
     cylinder(2, radius=0.225),
+    *(hopper(opening) for opening in (0.15, 0.2, 0.25)),
     variant("stiff", "Young's modulus 1e9 Pa", contact=Contact(youngs_modulus=1e9), time_step=1e-5),
     variant("deep", "depth of 8 mean diameters", depth=0.12),
     variant(

@@ -205,4 +205,22 @@ class Triaxial(Case):
     gas_fraction: Annotated[float, Field(gt=0, lt=0.4)] = 0.3
 
 
-AnyCase = Collapse | CylinderCollapse | PlaneShear | WallShear | ShearSteps | Compression | Triaxial
+class SlotHopper(Case):
+    """A flat silo whose floor opens in a slot at t = 0, between two walls; plane in the mean, periodic over `depth`.
+
+    The packing settles on a closed floor with low friction, is cut at `filling` (grains whose centre lies above are
+    taken out) and relaxes with the full friction of floor and walls; what falls out leaves.
+    """
+
+    kind: Literal["slot-hopper"] = "slot-hopper"
+    opening: Positive
+    width: Positive = 0.6
+    filling: Positive = 0.66
+    depth: Positive = 0.06
+    gravity: Positive = 9.81
+    relaxation: Positive = 0.15
+    end: Positive = 0.9
+    output_interval: Positive = 0.018
+
+
+AnyCase = Collapse | CylinderCollapse | PlaneShear | WallShear | ShearSteps | Compression | Triaxial | SlotHopper

@@ -9,6 +9,7 @@ from typing import Any
 
 from grainlaw.materials import InputError
 from grainlaw.materials.atomic import write_text
+from grainlaw.validation.dem.hopper import reference_rows
 from grainlaw.validation.dem.runs import RECORD
 from grainlaw.validation.grains.observation import Observation, write_observation
 from grainlaw.validation.grains.observe import observe_folder
@@ -180,12 +181,18 @@ def _triaxial_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
+def _hopper_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
+    """What has left over time, and what the packing was."""
+    return reference_rows(record, _read(run / record["table"]))
+
+
 ROWS = {
     "shear": _shear_rows,
     "wall-shear": _wall_shear_rows,
     "shear-steps": _shear_steps_rows,
     "compression": _compression_rows,
     "triaxial": _triaxial_rows,
+    "slot-hopper": _hopper_rows,
 }
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from grainlaw.materials.atomic import write_text
 from grainlaw.materials.errors import InputError, SimulationError
-from grainlaw.validation.dem import collapse, compression, shear, shear_steps, triaxial, wall_shear
+from grainlaw.validation.dem import collapse, compression, hopper, shear, shear_steps, triaxial, wall_shear
 from grainlaw.validation.dem.description import (
     AnyCase,
     Collapse,
@@ -20,6 +20,7 @@ from grainlaw.validation.dem.description import (
     CylinderCollapse,
     PlaneShear,
     ShearSteps,
+    SlotHopper,
     Triaxial,
     WallShear,
 )
@@ -167,6 +168,7 @@ def _kind(case: AnyCase) -> Any:
         WallShear: wall_shear,
         ShearSteps: shear_steps,
         Compression: compression,
+        SlotHopper: hopper,
         Triaxial: triaxial,
     }
     return modules[type(case)]
