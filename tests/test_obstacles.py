@@ -228,6 +228,10 @@ def test_a_free_disc_falls_and_takes_the_momentum_that_the_sand_gets():
         ({"velocity": [0.0, 0.1, 0.0]}, "takes x, y"),
         ({"frction": 0.5}, "did you mean 'friction'"),
         ({"motion": {"time": [0.0, 0.2, 0.1], "displacement": [[0, 0]] * 3}}, "increase from value to value"),
+        (
+            {"motion": {"time": [0.0, 1e-9], "displacement": [[0, 0], [5, 0]]}},
+            "5e+09 m/s from t = 0 to 1e-09 s is out of",
+        ),
         ({"free": {"density": 10.0, "mass": 1.0}}, "a density or a mass"),
         ({"center": [0.0, 0.0]}, "belongs to an angular_velocity"),
         ({"name": "two words"}, "obstacle.0.name"),
@@ -354,6 +358,16 @@ def test_a_closed_mesh_has_the_distances_mass_and_inertia_of_what_it_bounds(tmp_
     np.testing.assert_allclose(found.inertia, 0.192 / 12.0 * np.array([1.0, 0.8, 0.52]), rtol=1e-6)
     inside = at(found.surface, (0.0, 0.0, 0.0), (0.15, 0.0, 0.0), (0.3, 0.0, 0.0), space_axes=3)
     np.testing.assert_allclose(inside, [-0.2, -0.05, 0.1], atol=5e-3)
+
+
+def test_a_mesh_whose_parts_overlap_is_refused(tmp_path):
+    boxes = [
+        trimesh.creation.box([0.4, 0.4, 0.4], trimesh.transformations.translation_matrix([x, 1, 1])) for x in (1, 1.2)
+    ]
+    trimesh.util.concatenate(boxes).export(tmp_path / "boxes.stl")
+    shape = MeshRegion(kind="mesh", file=tmp_path / "boxes.stl")
+    with pytest.raises(ValueError, match=r"parts of the surface overlap, .*, at \(1\.0"):
+        placed(shape, GridSection(cell_size=0.1, lower=(0, 0, 0), upper=(2, 2, 2)))
 
 
 def test_what_sleeps_wakes_before_an_obstacle_that_moves_and_not_before_one_that_rests():

@@ -85,6 +85,7 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "obstacles.turned_column",
         "obstacles.hopper_discharge",
         "obstacles.hopper_discharge_3d",
+        "obstacles.hopper_grains",
     ),
     # The piles of other MPM codes on the paper's column.
     "mpm": (

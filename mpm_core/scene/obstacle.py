@@ -56,6 +56,14 @@ class MotionSection(Section):
                 raise ValueError(f"{name} has {len(values)} entries, time has {len(self.time)}")
         if self.time[0] != 0.0 or any(later <= time for time, later in pairwise(self.time)):
             raise ValueError("time must begin at 0 and increase from value to value")
+        ways = np.linalg.norm(np.diff(np.array(self.displacement, np.float64), axis=0), axis=1)
+        fastest = int(np.argmax(ways / np.diff(self.time)))
+        speed = ways[fastest] / (self.time[fastest + 1] - self.time[fastest])
+        if not speed <= LARGEST_SPEED:
+            raise ValueError(
+                f"{speed:g} m/s from t = {self.time[fastest]:g} to {self.time[fastest + 1]:g} s is out of bounds; "
+                f"allowed: up to {LARGEST_SPEED:g} m/s"
+            )
         return self
 
     def _read(self, file: Path) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from grainlaw.materials import InputError
 from grainlaw.mpm_core.obstacles import surface as surfaces
 from grainlaw.mpm_core.obstacles.motion import in_3d
 from grainlaw.mpm_core.obstacles.surface import Surface
@@ -23,6 +24,8 @@ Floats = NDArray[np.float64]
 
 # Distances on the grid of a mesh, at most, and cells that it reaches beyond the mesh.
 MOST_DISTANCES, MARGIN = 8e6, 2.0
+# Places at which a mesh is looked at for parts that overlap.
+MOST_LOOKED_AT = 5e5
 
 
 class Placed(NamedTuple):
@@ -57,6 +60,7 @@ def _mesh(shape: MeshRegion, grid: GridSection) -> Placed:
     if len(shape.bounds()[0]) != 3:
         raise ValueError(f"mesh file {shape.file} lies in the x-y plane; allowed: a closed surface or tetrahedra")
     lower, upper = map(np.array, shape.bounds())
+    _refuse_overlaps(shape, max(grid.cell_size, float((np.prod(upper - lower) / MOST_LOOKED_AT) ** (1.0 / 3.0))))
     volume, center, inertia = _mass_properties(shape.triangles())
     spacing = max(0.5 * grid.cell_size, float((np.prod(upper - lower) / MOST_DISTANCES) ** (1.0 / 3.0)))
     # as far around it as a point reaches
@@ -64,6 +68,15 @@ def _mesh(shape: MeshRegion, grid: GridSection) -> Placed:
     counts = np.ceil((upper - lower + 2.0 * MARGIN * grid.cell_size) / spacing).astype(int) + 1
     distances = _distances_of_triangles(shape.triangles() - center, start, spacing, counts, volume < 0.0)
     return _placed(surfaces.distance_grid(start.tolist(), spacing, distances), tuple(center), abs(volume), inertia)
+
+
+def _refuse_overlaps(shape: MeshRegion, spacing: float) -> None:
+    """Where parts overlap, distances within would be those to the faces inside, and volumes would count twice."""
+    axes = [np.arange(low + 0.5 * spacing, high, spacing) for low, high in zip(*shape.bounds(), strict=True)]
+    try:
+        shape.contains(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3))
+    except InputError as error:
+        raise ValueError(str(error)) from error
 
 
 def _distances_of_triangles(
