@@ -3,7 +3,6 @@
 import csv
 import io
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -82,12 +81,6 @@ def reduce(case: SlotHopper, folder: Path) -> Reduced:
         writer.writerow([f"{value:.6g}" for value in values])
     write_text(folder / TABLE, text.getvalue())
     return Reduced(steps, round(above[0, 2]), TABLE)
-
-
-def reference_rows(record: dict[str, Any], rows: list[dict[str, str]]) -> list[dict[str, Any]]:
-    """The rows of a run in the reference set: code, packing and opening before what its table says."""
-    opening = record["description"]["opening"]
-    return [{"code": record["code"], "seed": record["seed"], "opening": opening, **row} for row in rows]
 
 
 def _output_steps(case: SlotHopper) -> int:

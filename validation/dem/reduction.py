@@ -9,7 +9,6 @@ from typing import Any
 
 from grainlaw.materials import InputError
 from grainlaw.materials.atomic import write_text
-from grainlaw.validation.dem.hopper import reference_rows
 from grainlaw.validation.dem.runs import RECORD
 from grainlaw.validation.grains.observation import Observation, write_observation
 from grainlaw.validation.grains.observe import observe_folder
@@ -182,8 +181,8 @@ def _triaxial_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def _hopper_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
-    """What has left over time, and what the packing was."""
-    return reference_rows(record, _read(run / record["table"]))
+    """The mass in the silo, and what passes its opening, over time."""
+    return [{"code": record["code"], "seed": record["seed"], **row} for row in _read(run / record["table"])]
 
 
 ROWS = {

@@ -14,10 +14,12 @@ from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
 from grainlaw.validation.dem.catalogue import hopper
 from grainlaw.validation.dem.description import SlotHopper
+from grainlaw.validation.dem.judging.column import flat_friction
 from grainlaw.validation.dem.judging.fitted_laws import FittedLaw, fitted
 from grainlaw.validation.dem.judging.fitting_data import write_data
 from grainlaw.validation.dem.judging.judged_laws import JUDGED_LAWS
-from grainlaw.validation.reference.reference_set import SLOT_HOPPER, read_reference_set, read_rows
+from grainlaw.validation.dem.reduction import table_name
+from grainlaw.validation.reference.reference_set import read_reference_set
 from grainlaw.validation.scenes import advance, simulation_of
 
 Floats = NDArray[np.float64]
@@ -72,7 +74,7 @@ class Discharge:
 
 def discharges_of_grains(opening: float) -> list[Discharge]:
     """Of each packing of the reference set."""
-    rows = [row for row in read_rows(SLOT_HOPPER) if math.isclose(row["opening"], opening)]
+    rows = read_reference_set().tests[Path(table_name(hopper(opening).name)).stem]
     found = []
     for seed in sorted({row["seed"] for row in rows}):
         table = [
@@ -86,11 +88,14 @@ def discharges_of_grains(opening: float) -> list[Discharge]:
 
 
 def silo(case: SlotHopper, law: FittedLaw, mass: float, cells_across: int) -> dict[str, Any]:
-    """Half of the silo as a scene, with the mass of the grains per width [kg/m], resting; its slot is open."""
+    """Half of the silo as a scene, with the mass of the grains per width [kg/m], resting; its slot is open.
+
+    Walls and plates have the friction of shear over a flat plane: grains roll on it.
+    """
     half, edge = 0.5 * case.width, 0.5 * case.opening
     cell = half / round(half * cells_across / case.opening)
     below, above = (math.ceil(length / cell) for length in (0.15, case.filling + cell))
-    deep, friction = PLATE * cell, case.contact.friction
+    deep, friction = PLATE * cell, flat_friction(read_reference_set())
     # Undercut, so that the edge is as sharp as that of the plates of the grains.
     plate = [[edge, 0.0], [edge + deep, -deep], [half + deep, -deep], [half + deep, 0.0]]
     name = law.judged.law
@@ -185,7 +190,7 @@ CASE = Case(
     name="hopper_grains",
     title="discharge of a flat silo through slots, against grains",
     proves="laws fitted to shear of grains, and nothing else, empty a silo at the rate of these grains",
-    reference="our LIGGGHTS runs of a silo with three openings (validation/reference/slot_hopper.csv)",
+    reference="our LIGGGHTS runs of a silo with three openings (validation/reference/hopper_w*.csv)",
     norm="relative deviation of the rate of discharge, while it is steady, from the mean over the packings",
     mistake="half of the friction of the law",
     measure=measure,
