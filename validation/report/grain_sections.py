@@ -57,7 +57,8 @@ def sections(report: Report, shear: Rows) -> list[Section]:
     scatter = scatter_table(report.scatter)
     controls = variant_table(
         "Negative controls",
-        "One mistake each: mu(I)-LC must come out as differs, mu(I), phi(I) as no longer indistinguishable.",
+        "One mistake each: mu(I)-LC and mu(I), state must come out as differs; mu(I), phi(I), and mu(I), state under "
+        "another gravity, as no longer indistinguishable.",
         report.controls,
     )
     parts = [
