@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from benchmarks.columns import cell_size_for, moving_column
+from benchmarks.cylinders import moving_cylinder
 from benchmarks.forecasts import QUICK_SCENES, forecasts
 from benchmarks.forecasts import SCENES as FORECAST_SCENES
 from benchmarks.machine import machine_description
@@ -40,6 +41,7 @@ class Part(StrEnum):
     """What can be measured by itself."""
 
     PASSES = "passes"
+    PASSES_3D = "passes-3d"
     YARDSTICK = "yardstick"
     YARDSTICK_3D = "yardstick-3d"
     SIZES = "sizes"
@@ -153,7 +155,14 @@ def _passes(record: Record, materials: list[str], effort: Effort, roofline: Roof
     for material in materials:
         column = moving_column(material, effort.cell_size, precision=effort.precision)
         found = pass_times(column, effort.pass_steps, roofline)
-        record.add("passes", found, pass_table(material, found))
+        record.add("passes", found, pass_table("column", material, found))
+
+
+def _passes_3d(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+    for material in materials:
+        cylinder = moving_cylinder(material, effort.cell_size_3d, precision=effort.precision)
+        found = pass_times(cylinder, effort.pass_steps, roofline)
+        record.add("passes-3d", found, pass_table("cylinder", material, found))
 
 
 def _yardstick(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
@@ -189,7 +198,7 @@ def _domain(record: Record, materials: list[str], effort: Effort, roofline: Roof
     record.add("domain", found, domain_table(materials[0], found))
 
 
-def _flip_fraction(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
+def _memory(record: Record, materials: list[str], effort: Effort, roofline: Roofline) -> None:
     largest, smallest = cell_size_for(effort.sizes[-1]), cell_size_for(effort.sizes[0])
     found = {material: memory_per_point(material, largest, smallest, effort.precision) for material in materials}
     record.add("memory", found, memory_table(found))
@@ -213,12 +222,13 @@ def _threads() -> list[int]:
 
 MEASURES: dict[Part, Callable[[Record, list[str], Effort, Roofline], None]] = {
     Part.PASSES: _passes,
+    Part.PASSES_3D: _passes_3d,
     Part.YARDSTICK: _yardstick,
     Part.YARDSTICK_3D: _yardstick_3d,
     Part.SIZES: _sizes,
     Part.CORES: _two_cores,
     Part.DOMAIN: _domain,
-    Part.MEMORY: _flip_fraction,
+    Part.MEMORY: _memory,
     Part.PLANS: _plans,
     Part.SWEEP: _sweep,
 }

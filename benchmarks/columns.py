@@ -28,12 +28,17 @@ def moving_column(
     upper = [3.2 * domain_factor, 1.0 * domain_factor]
     simulation = collapse(material, cell_size, {"grid.upper": upper, "precision": precision})
     simulation.threads = threads
-    body = simulation.bodies[0]
-    body.velocity[0] = SPREADING_RATE * (body.positions[0] - body.positions[0].mean())
-    body.velocity[1] = -SPREADING_RATE * body.positions[1]
-    body.velocity_gradient[0, 0], body.velocity_gradient[1, 1] = SPREADING_RATE, -SPREADING_RATE
-    body.affine[0, 0], body.affine[1, 1] = SPREADING_RATE, -SPREADING_RATE
+    set_in_motion(simulation, (SPREADING_RATE, -SPREADING_RATE))
     return simulation
+
+
+def set_in_motion(simulation: Simulation, rates: tuple[float, ...]) -> None:
+    """Stretch the body along each axis at a rate [1/s]: horizontally about its middle, vertically from the floor."""
+    body = simulation.bodies[0]
+    for axis, rate in enumerate(rates):
+        middle = 0.0 if axis == simulation.space.up else body.positions[axis].mean()
+        body.velocity[axis] = rate * (body.positions[axis] - middle)
+        body.velocity_gradient[axis, axis] = body.affine[axis, axis] = rate
 
 
 def make_steps(simulation: Simulation, count: int) -> None:

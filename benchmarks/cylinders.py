@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from benchmarks.columns import SPREADING_RATE, set_in_motion
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.scene.shipped import shipped_scenes
 from grainlaw.mpm_core.simulation import Simulation
@@ -26,3 +27,10 @@ def cylinder(material: str, cell_size: float, changes: dict[str, Any]) -> Simula
         "output.fields": [],
     }
     return Simulation(Scene.load(shipped_scenes()[SCENES[material]], {**in_space, **changes}))
+
+
+def moving_cylinder(material: str, cell_size: float, precision: str = "double") -> Simulation:
+    """The cylinder with a velocity field that stretches and lowers it without change of volume."""
+    simulation = cylinder(material, cell_size, {"precision": precision})
+    set_in_motion(simulation, (SPREADING_RATE, SPREADING_RATE, -2.0 * SPREADING_RATE))
+    return simulation

@@ -20,23 +20,34 @@ from benchmarks.roofline import Roofline
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.simulation import Simulation
 
-# Rows of a point that a pass reads and writes; of the stress pass without the law's state.
-ROWS_MOVED = {
-    # x, v, affine velocity, in-plane stress, density
-    "P2G": 12,
-    # reads x, v, affine velocity; writes x, v, L, affine velocity
-    "G2P": 8 + 12,
-    # reads v, L, stress, density; writes stress, density
-    "stress update": 11 + 5,
-}
-# What single precision adds: the remainders of x, y and density, read and written.
-REMAINDERS_MOVED = {"P2G": 2, "G2P": 4, "stress update": 2}
 STATE_PASSES = ("stress update",)
-# Operations per point, for quadratic splines: stencil and weights, what a point contributes or interpolates, then nine
-# nodes of eight components, of which most steps gather four.
+
+
+def rows_moved(axes: int) -> dict[str, int]:
+    """Rows of a point that a pass reads and writes in two or three axes; of the stress pass without the law's state."""
+    of_matrix, of_tensor, of_plane = axes * axes, 2 * axes, axes * (axes + 1) // 2
+    return {
+        # x, v, affine velocity, stress of the grid's axes, density
+        "P2G": 2 * axes + of_matrix + of_plane + 1,
+        # reads x, v, affine velocity; writes x, v, L, affine velocity
+        "G2P": (2 * axes + of_matrix) + (2 * axes + 2 * of_matrix),
+        # reads v, L, stress, density; writes stress, density
+        "stress update": (axes + of_matrix + of_tensor + 1) + (of_tensor + 1),
+    }
+
+
+def remainders_moved(axes: int) -> dict[str, int]:
+    """What single precision adds: the remainders of places and density, read and written."""
+    return {"P2G": axes, "G2P": 2 * axes, "stress update": 2}
+
+
+# Operations per point by axes, for quadratic splines: stencil and weights, what a point contributes or interpolates,
+# then the nodes. In the plane a node has eight components, of which most steps gather four. In three axes what a point
+# brings grows from node to node, row to row, plane to plane; velocities before and after are summed with their first
+# moments row by row, plane by plane, in 93 multiply-adds of each component.
 OPERATIONS = {
-    "P2G": 45 + 40 + 9 * (8 * 2 + 4),
-    "G2P": 45 + 80 + 9 * 4 * 4,
+    2: {"P2G": 45 + 40 + 9 * (8 * 2 + 4), "G2P": 45 + 80 + 9 * 4 * 4},
+    3: {"P2G": 70 + 70 + 27 * (8 * 2 + 8 + 1) + 9 * (8 + 1) + 3 * 8, "G2P": 70 + 130 + 6 * 93 * 2},
 }
 
 
@@ -72,13 +83,15 @@ def pass_times(simulation: Simulation, steps: int, roofline: Roofline) -> list[P
 
 
 def _floor(name: str, body: Body, roofline: Roofline) -> float | None:
-    if name not in ROWS_MOVED:
+    axes = body.space.axes
+    moved = rows_moved(axes)
+    if name not in moved:
         return None
-    rows = ROWS_MOVED[name] + (2 * len(body.law.state._fields) if name in STATE_PASSES else 0)
-    remainders = REMAINDERS_MOVED[name] if body.precision == "single" else 0
+    rows = moved[name] + (2 * len(body.law.state._fields) if name in STATE_PASSES else 0)
+    remainders = remainders_moved(axes)[name] if body.precision == "single" else 0
     bytes_moved = (rows + remainders) * body.points.itemsize
     moving = bytes_moved / roofline.bandwidth(body.points.nbytes)
-    return 1e9 * max(moving, OPERATIONS.get(name, 0) / roofline.arithmetic_rates[body.precision])
+    return 1e9 * max(moving, OPERATIONS[axes].get(name, 0) / roofline.arithmetic_rates[body.precision])
 
 
 @contextmanager

@@ -53,7 +53,7 @@ def race_table(what: str, material: str, results: Sequence[Result]) -> Table:
     return Table(f"{what}, {material}", headings, rows)
 
 
-def pass_table(material: str, passes: Sequence[PassTime]) -> Table:
+def pass_table(body: str, material: str, passes: Sequence[PassTime]) -> Table:
     """Where the time goes."""
     rows = [
         (
@@ -67,7 +67,7 @@ def pass_table(material: str, passes: Sequence[PassTime]) -> Table:
     ]
     rows.append(("step", f"{sum(found.nanoseconds for found in passes):.1f}", "100%", "", ""))
     headings = ("pass", "ns per point", "share", "floor of the roofline", "fraction reached")
-    return Table(f"Passes of a step, one core, {material}", headings, tuple(rows))
+    return Table(f"Passes of a step, one core, {body}, {material}", headings, tuple(rows))
 
 
 def size_table(material: str, costs: Sequence[Cost]) -> Table:
