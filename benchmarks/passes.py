@@ -1,7 +1,7 @@
 """Where the time of a step goes, pass by pass, and how far from the roofline each pass is.
 
 The passes are timed from outside: for the time of the measurement, the functions that a step calls are replaced by ones
-that keep a clock. What is left of the step belongs to no pass: reports, reductions, Python.
+that keep a clock of processor time. What is left of the step belongs to no pass: reports, reductions, Python.
 
 The floor of a pass is the larger of two times: its bytes at the bandwidth that a triad reaches on a working set as
 large as the points, and its operations at the arithmetic rate. Bytes are what the pass has to read and write of a
@@ -70,9 +70,9 @@ def pass_times(simulation: Simulation, steps: int, roofline: Roofline) -> list[P
     """Time the passes over some steps of a simulation of one body."""
     make_steps(simulation, 3)
     with _clocks(simulation) as seconds:
-        started = time.perf_counter()
+        started = time.process_time()
         make_steps(simulation, steps)
-        whole = time.perf_counter() - started
+        whole = time.process_time() - started
     seconds["rest"] = whole - sum(seconds.values())
     body = simulation.bodies[0]
     per_point = 1e9 / (steps * body.count)
@@ -118,9 +118,9 @@ def _clocks(simulation: Simulation) -> "Iterator[dict[str, float]]":
 
 def _with_clock(function: Callable[..., Any], name: str, seconds: dict[str, float]) -> Callable[..., Any]:
     def call(*arguments: Any, **keywords: Any) -> Any:
-        started = time.perf_counter()
+        started = time.process_time()
         result = function(*arguments, **keywords)
-        seconds[name] += time.perf_counter() - started
+        seconds[name] += time.process_time() - started
         return result
 
     return call

@@ -52,12 +52,15 @@ def _multiply_adds(x, factor, summand, rounds):  # type: ignore[no-untyped-def]
 
 
 def triad_bandwidth(working_set: int) -> float:
-    """Bytes/s of a = b + factor c, two reads and one write, best of several; `working_set` is that of all three."""
+    """Bytes/s of processor time of a = b + factor c, two reads and one write, best of several.
+
+    `working_set` is that of all three [bytes].
+    """
     length = working_set // 24
     a, b, c = np.zeros(length), np.ones(length), np.ones(length)
     rounds = max(1, int(LEAST_WORK / (24 * length)))
     _triad(a, b, c, 0.5, 1)
-    return 24 * length * rounds / min(timed(lambda: _triad(a, b, c, 0.5, rounds)).wall for _ in range(REPEATS))
+    return 24 * length * rounds / min(timed(lambda: _triad(a, b, c, 0.5, rounds)).cpu for _ in range(REPEATS))
 
 
 def arithmetic_rate(precision: str) -> float:
@@ -66,7 +69,7 @@ def arithmetic_rate(precision: str) -> float:
     x, factor, summand = np.ones(L1_BYTES // np.dtype(number).itemsize, number), number(0.999), number(0.001)
     rounds = int(LEAST_WORK / (2 * CHAIN * len(x)))
     _multiply_adds(x, factor, summand, 1)
-    best = min(timed(lambda: _multiply_adds(x, factor, summand, rounds)).wall for _ in range(REPEATS))
+    best = min(timed(lambda: _multiply_adds(x, factor, summand, rounds)).cpu for _ in range(REPEATS))
     return 2 * CHAIN * len(x) * rounds / best
 
 

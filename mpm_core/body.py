@@ -30,7 +30,7 @@ from grainlaw.mpm_core.parallel.blocks import blocks_of
 from grainlaw.mpm_core.parallel.sorting import reorder, sort_by_stencil
 from grainlaw.mpm_core.space import Space
 
-# Points whose distinct states are found together at the start; flip_fraction would peak with all of them.
+# Points whose distinct states are found together at the start; memory would peak with all of them.
 POINTS_AT_ONCE = 2**18
 
 
