@@ -39,6 +39,8 @@ Array = NDArray[np.float64]
 NORMAL = SymmetricTensor(0.0, -1.0, 0.0, 0.0, 0.0, 0.0)
 # Of tau/(normal stress), over the second half of the strain at one inertial number.
 STEADY = 1e-4
+# Of a number of steps.
+ROUND_OFF = 1e-6
 
 StrainStep = Annotated[float, Parameter("1", "largest strain of the driven component in one step", "(0, inf)")]
 
@@ -191,33 +193,38 @@ def steady_shear(specimen: Specimen, settings: SteadyShearSettings, numbers: Arr
 
 
 def shear_start(specimen: Specimen, settings: ShearStartSettings, strains: Array) -> ElementResult:
-    """The point at each strain, sheared from an isotropic state, in steps of equal duration.
-
-    The inertial number is that of the widest spacing of the strains.
-    """
-    start = _pressed(specimen, settings)
+    """The point at each strain, sheared from an isotropic state at one inertial number."""
     rate = settings.held_inertial_number / _number_of_unit_rate(settings)
     changes = np.diff(strains, prepend=0.0)
-    substeps = max(1, math.ceil(float(np.max(np.abs(changes))) / settings.strain_step))
-    dt = max(float(np.max(np.abs(changes))), 1e-300) / substeps / rate
-    path = _at_normal_stress(settings, dt, np.repeat(changes / (substeps * dt), substeps))
-    points = (start, *follow_path(specimen, path, start, substeps))
-    return ElementResult(specimen, "shear-start", settings, path.steps, points)
+    return _sheared(specimen, settings, "shear-start", np.abs(changes) / rate, changes)
 
 
 def shear_history(specimen: Specimen, settings: ShearHistorySettings, driven: Array) -> ElementResult:
     """The point at each time, sheared from an isotropic state along strains over time, (rows, 2)."""
+    durations, changes = np.diff(driven, axis=0, prepend=np.zeros((1, 2))).T
+    return _sheared(specimen, settings, "shear-history", durations, changes)
+
+
+def _sheared(
+    specimen: Specimen,
+    settings: ShearStartSettings | ShearHistorySettings,
+    test: str,
+    durations: Array,
+    changes: Array,
+) -> ElementResult:
+    """Shear at held normal stress from an isotropic state by changes of strain, each within its own duration [s]."""
     points, steps = [_pressed(specimen, settings)], 0
-    for duration, change in np.diff(driven, axis=0, prepend=np.zeros((1, 2))).tolist():
+    for duration, change in zip(durations.tolist(), changes.tolist(), strict=True):
         if duration == 0.0:
             points.append(points[-1])
             continue
-        count = max(1, math.ceil(abs(change) / settings.strain_step))
+        count = max(1, math.ceil(abs(change) / settings.strain_step - ROUND_OFF))
         path = _at_normal_stress(settings, duration / count, np.full(count, change / duration))
         points += follow_path(specimen, path, points[-1], count)
         steps += count
-    points = [point._replace(time=time) for point, time in zip(points, [0.0, *driven[:, 0].tolist()], strict=True)]
-    return ElementResult(specimen, "shear-history", settings, steps, tuple(points))
+    times = np.concatenate([[0.0], np.cumsum(durations)]).tolist()
+    points = [point._replace(time=time) for point, time in zip(points, times, strict=True)]
+    return ElementResult(specimen, test, settings, steps, tuple(points))
 
 
 def _pressed(specimen: Specimen, settings: AnyShearSettings) -> Point:

@@ -34,9 +34,9 @@ SMALLEST_PRESSURE, LARGEST_PRESSURE = 500.0, 10e3
 COMPRESSION_POINTS = 30
 # Standard error of the pressures of compression, which come without one [1].
 PRESSURE_ERROR = 0.05
-# Past the elastic rise of the stress, and up to where the bulk of every packing has been sheared.
+# Past the rise of the stress, in which contacts are made, and up to where the bulk of every packing has been sheared.
 START_STRAINS = np.linspace(0.04, 0.16, 7)
-PEAK_STRAINS = np.array([0.01, 0.02, 0.03, 0.04, 0.05, *START_STRAINS[1:]])
+PEAK_STRAINS = np.array([0.02, 0.03, 0.04, 0.05, *START_STRAINS[1:]])
 # Of packings that are not dense: their friction rises over a tenth.
 LATE_STRAINS = np.linspace(0.02, 0.36, 18)
 
