@@ -4,8 +4,8 @@ import warnings
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from grainlaw.materials.errors import InputWarning
 from grainlaw.mpm_core.body import Body
@@ -73,7 +73,7 @@ class ThinPlates:
         beyond = places - THICK * self.cell_size * normals
         is_thin = distances(obstacle, np.ascontiguousarray(beyond.T)) > 0.0
         places, normals = places[is_thin], normals[is_thin]
-        one, other = cKDTree(places).query_pairs(THICK * self.cell_size, output_type="ndarray").T
+        one, other = scipy.spatial.cKDTree(places).query_pairs(THICK * self.cell_size, output_type="ndarray").T
         return bool(((normals[one] * normals[other]).sum(axis=1) < OPPOSED).any())
 
     def _normals(self, obstacle: Obstacle, places: Floats) -> Floats:

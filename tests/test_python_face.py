@@ -34,6 +34,14 @@ def test_importing_is_light():
     assert "typing" in done.stdout
 
 
+def test_the_core_loads_what_a_scene_may_need_no_earlier():
+    program = "import sys, grainlaw.mpm_core; print(sorted(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=ROOT, check=True)
+    heavy = ("scipy.spatial", "scipy.optimize", "scipy.stats", "matplotlib", "pyvista", "trimesh", "pandas")
+    assert [name for name in heavy if repr(name) in done.stdout] == []
+    assert "'numba'" in done.stdout
+
+
 def test_names_are_offered_and_others_refused():
     assert set(gl.__all__) <= set(dir(gl))
     with pytest.raises(AttributeError, match="has no attribute 'lawz'"):
