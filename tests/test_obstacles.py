@@ -1,7 +1,6 @@
 """Obstacles: distances, contact on planes at any angle, motion, forces, and what is wrong with a scene."""
 
 import math
-import warnings
 
 import numpy as np
 import pytest
@@ -9,7 +8,6 @@ import trimesh
 from scenes_for_tests import ELASTIC, MU_I_LC, changed, simulation, write_scene
 
 from grainlaw.materials import InputError
-from grainlaw.materials.errors import InputWarning
 from grainlaw.mpm_core import Scene
 from grainlaw.mpm_core.obstacles import surface as surfaces
 from grainlaw.mpm_core.obstacles.contact import distances
@@ -304,47 +302,6 @@ def test_nothing_is_shot_through_a_plate(speed, thickness):
     assert body.positions[1].min() > 0.06
     assert case.ledger.kinetic < energy
     assert case.ledger.numerical_dissipation > -1e-3 * energy
-
-
-def parted(thickness, room=0.0, velocities=((0.0, 0.0), (1.0, 0.0))):
-    """Sand below and above a plate of some cells without gravity, some room away from it."""
-    low, high = 0.25 - 0.0125 * thickness, 0.25 + 0.0125 * thickness
-    corners = (([0.1, low - room - 0.1], [0.4, low - room]), ([0.1, high + room], [0.4, high + room + 0.1]))
-    bodies = [
-        BOX["body"][0]
-        | {
-            "initial_stress": {"kind": "none"},
-            "shape": {"kind": "rectangle", "lower": lower, "upper": upper},
-            "velocity": list(velocity),
-        }
-        for (lower, upper), velocity in zip(corners, velocities, strict=True)
-    ]
-    shape = {"kind": "line", "points": [[-0.1, 0.25], [0.6, 0.25]], "thickness": 0.025 * thickness}
-    plate = {"name": "plate", "friction": 0.3, "shape": shape}
-    return simulation(BOX, {"gravity": [0.0, 0.0], "body": bodies, "obstacle": [plate]})
-
-
-def test_a_plate_of_three_cells_parts_two_fills_and_a_thinner_one_is_refused():
-    case = parted(3.0)
-    case.advance_to(0.02)
-    below, above = (float(body.velocity[0].mean()) for body in case.bodies)
-    assert below == pytest.approx(0.0, abs=1e-12)
-    assert above == pytest.approx(1.0, rel=1e-9)
-    with pytest.raises(
-        InputError, match=r"'plate' is 0.05 m thick, 2 cells: .*; allowed: 0.075 m or more, or cells of"
-    ):
-        parted(2.0)
-
-
-def test_a_thin_plate_is_told_of_when_material_has_come_to_both_sides_and_not_before():
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        one_sided = parted(0.8, room=0.05, velocities=((0.0, 1.0), (0.0, 0.0)))
-        one_sided.advance_to(0.08)
-        case = parted(0.8, room=0.05, velocities=((0.0, 1.0), (0.0, -1.0)))
-        case.advance_to(0.02)
-    with pytest.warns(InputWarning, match=r"both sides .* 'plate' is 0.02 m thick, 0.8 cells; what would do: 0.075 m"):
-        case.advance_to(0.08)
 
 
 def test_a_closed_mesh_has_the_distances_mass_and_inertia_of_what_it_bounds(tmp_path):

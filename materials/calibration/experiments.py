@@ -42,6 +42,7 @@ STEADY = 1e-4
 # Of a number of steps.
 ROUND_OFF = 1e-6
 
+HeldNormalStress = Annotated[float, Parameter("Pa", "held compressive stress on the plane of shear", "(0, inf)")]
 StrainStep = Annotated[float, Parameter("1", "largest strain of the driven component in one step", "(0, inf)")]
 
 
@@ -58,9 +59,7 @@ class StrainedDataSettings(NamedTuple):
 class SteadyShearSettings(NamedTuple):
     """Settings of steady shear at held normal stress."""
 
-    held_normal_stress: Annotated[
-        float, Parameter("Pa", "held compressive stress on the plane of shear", "(0, inf)")
-    ] = 1e3
+    held_normal_stress: HeldNormalStress = 1e3
     density: InitialDensity = 0.0
     grain_density: GrainDensity = 2450.0
     grain_diameter: GrainDiameter = 0.005
@@ -73,9 +72,7 @@ class SteadyShearSettings(NamedTuple):
 class ShearStartSettings(NamedTuple):
     """Settings of the start of shear at held normal stress."""
 
-    held_normal_stress: Annotated[
-        float, Parameter("Pa", "held compressive stress on the plane of shear", "(0, inf)")
-    ] = 1e3
+    held_normal_stress: HeldNormalStress = 1e3
     density: InitialDensity = 0.0
     grain_density: GrainDensity = 2450.0
     grain_diameter: GrainDiameter = 0.005
@@ -88,9 +85,7 @@ class ShearStartSettings(NamedTuple):
 class ShearHistorySettings(NamedTuple):
     """Settings of shear at held normal stress, with the strain of the data over time."""
 
-    held_normal_stress: Annotated[
-        float, Parameter("Pa", "held compressive stress on the plane of shear", "(0, inf)")
-    ] = 1e3
+    held_normal_stress: HeldNormalStress = 1e3
     density: InitialDensity = 0.0
     grain_density: GrainDensity = 2450.0
     strain_step: StrainStep = 5e-4

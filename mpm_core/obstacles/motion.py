@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 
 def turn_about(vector: Floats) -> "scipy.spatial.transform.Rotation":
-    """The rotation about a vector [rad] by its length."""
+    """The rotation about a vector [rad] by its length; of several, shape (n, 3), one each."""
     return scipy.spatial.transform.Rotation.from_rotvec(vector)
 
 

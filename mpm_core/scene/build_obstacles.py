@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from grainlaw.materials import InputError
 from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.obstacles.contact import distances
-from grainlaw.mpm_core.obstacles.motion import Along, Free, Motion, Steady, at_rest, in_3d
+from grainlaw.mpm_core.obstacles.motion import Along, Free, Motion, Steady, at_rest, in_3d, turn_about
 from grainlaw.mpm_core.obstacles.obstacle import Obstacle
 from grainlaw.mpm_core.scene.initial_state import spacing_of_points
 from grainlaw.mpm_core.scene.model import Scene
@@ -62,8 +62,8 @@ def _motion(scene: Scene, section: ObstacleSection, found: Placed) -> Motion:
 def _along(table: MotionSection, found: Placed) -> Motion:
     ways = np.array([in_3d(way) for way in table.displacement or ()])
     angles = np.array(table.angle or [0.0] * len(ways))
-    rotation = scipy.spatial.transform.Rotation
-    turns = rotation.from_rotvec(np.outer(angles, [0.0, 0.0, 1.0])) * rotation.from_matrix(found.rotation)
+    start = scipy.spatial.transform.Rotation.from_matrix(found.rotation)
+    turns = turn_about(np.outer(angles, [0.0, 0.0, 1.0])) * start
     times = np.array(table.time or ())
     along = Along(times, found.position + ways, turns)
     along.before(0.0, float(times[1]))

@@ -4,12 +4,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from grainlaw.materials import InputError
 from grainlaw.mpm_core.obstacles import surface as surfaces
-from grainlaw.mpm_core.obstacles.motion import in_3d
+from grainlaw.mpm_core.obstacles.motion import in_3d, turn_about
 from grainlaw.mpm_core.obstacles.surface import Surface
 from grainlaw.mpm_core.scene.heights import Heights
 from grainlaw.mpm_core.scene.mesh_region import MeshRegion
@@ -139,8 +138,7 @@ def _turned_up(direction: Floats) -> Floats:
     if np.linalg.norm(axis) < 1e-12:
         return np.eye(3) if cosine > 0.0 else np.diag([1.0, -1.0, -1.0])
     angle = np.arctan2(np.linalg.norm(axis), cosine)
-    turn = scipy.spatial.transform.Rotation.from_rotvec(angle * axis / np.linalg.norm(axis))
-    return np.asarray(turn.as_matrix())
+    return np.asarray(turn_about(angle * axis / np.linalg.norm(axis)).as_matrix())
 
 
 def _box(shape: Box) -> Placed:

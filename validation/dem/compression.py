@@ -1,14 +1,11 @@
 """Isotropic compression and unloading of a periodic cube: the deck and the pressure over the solid fraction."""
 
-import csv
-import io
 from pathlib import Path
 
 import numpy as np
 
-from grainlaw.materials.atomic import write_text
 from grainlaw.materials.errors import SimulationError
-from grainlaw.validation.dem.cell import Reduced
+from grainlaw.validation.dem.cell import Reduced, write_table
 from grainlaw.validation.dem.description import Compression, Triaxial
 from grainlaw.validation.dem.liggghts import contact_values, data_file, decks, template_texts
 from grainlaw.validation.dem.packing import loose, mean_volume, random_radii
@@ -59,22 +56,27 @@ def templates(code: str) -> Files:
 
 def reduce(case: Compression, folder: Path) -> Reduced:
     """Write pressure over solid fraction, loading and unloading, to `compression.csv`."""
-    log = (folder / "log.txt").read_text(encoding="utf-8", errors="replace")
-    if "FINISHED" not in log:
-        raise SimulationError(f"LIGGGHTS stopped before the end; see {folder / 'log.txt'}")
+    log = finished_log(folder)
     solid = solid_volume(folder / "grains.data")
     loading, _, unloading = log.partition("\nLOADING")[2].partition("\nUNLOADING")
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    rows = []
     last = 0
     for stage, part in (("loading", loading), ("unloading", unloading)):
         for step, _, volume, xx, yy, zz in rows_of_log(part, 7):
             last, mean = int(step), (xx + yy + zz) / 3.0
             values = (step * case.time_step, solid / volume, mean, xx, yy, zz)
-            writer.writerow((stage, *(f"{value:.7g}" for value in values)))
-    write_text(folder / TABLE, text.getvalue())
+            rows.append((stage, *(f"{value:.7g}" for value in values)))
+    write_table(folder / TABLE, COLUMNS, rows)
     return Reduced(last, int(rows_of_log(unloading, 7)[0][1]), TABLE)
+
+
+def finished_log(folder: Path) -> str:
+    """What LIGGGHTS logged of a run. Raises SimulationError if it did not come to its end."""
+    path = folder / "log.txt"
+    log = path.read_text(encoding="utf-8", errors="replace")
+    if "\nFINISHED" not in log:
+        raise SimulationError(f"LIGGGHTS stopped before the end; see {path}")
+    return log
 
 
 def rows_of_log(log: str, words: int) -> list[tuple[float, ...]]:

@@ -1,14 +1,11 @@
 """A flat silo that empties through a slot: the deck, and what has left over time."""
 
-import csv
-import io
 from pathlib import Path
 
 import numpy as np
 
-from grainlaw.materials.atomic import write_text
 from grainlaw.materials.errors import SimulationError
-from grainlaw.validation.dem.cell import Reduced
+from grainlaw.validation.dem.cell import Reduced, write_table
 from grainlaw.validation.dem.description import SlotHopper
 from grainlaw.validation.dem.liggghts import SETTLING_FRICTION, contact_values, data_file, decks, template_texts
 from grainlaw.validation.dem.packing import loose, mean_volume, random_radii
@@ -72,14 +69,12 @@ def reduce(case: SlotHopper, folder: Path) -> Reduced:
         raise SimulationError(f"LIGGGHTS stopped before the end; see {folder / 'log.txt'}")
     layer = case.opening * case.depth * case.grains.mean_diameter * case.grains.density
     passed = np.vstack([[0.0, 0.0, 0.0], within])
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    rows = []
     for (step, mass, _), (_, inside, momentum) in zip(above, passed, strict=True):
         speed = momentum / inside if inside > 0.0 else 0.0
         values = (step * case.time_step, mass / case.depth, inside / layer, speed)
-        writer.writerow([f"{value:.6g}" for value in values])
-    write_text(folder / TABLE, text.getvalue())
+        rows.append([f"{value:.6g}" for value in values])
+    write_table(folder / TABLE, COLUMNS, rows)
     return Reduced(steps, round(above[0, 2]), TABLE)
 
 

@@ -1,15 +1,13 @@
 """Plane shear at constant normal stress: the deck, and steady averages with standard errors by blocks."""
 
-import csv
-import io
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from grainlaw.materials.atomic import write_text
-from grainlaw.validation.dem.cell import Reduced
+from grainlaw.validation.dem.cell import Reduced, write_table
 from grainlaw.validation.dem.description import PlaneShear, ShearCell, ShearStage, SteadyShear, WallShear
 from grainlaw.validation.dem.liggghts import contact_values, data_file, decks, template_texts
 from grainlaw.validation.dem.packing import Array, Packing, loose, mean_volume, random_radii
@@ -109,18 +107,9 @@ def rate(case: ShearCell, inertial_number: float) -> float:
 
 def reduce(case: PlaneShear, folder: Path) -> Reduced:
     """Write the steady averages of every stage to `shear.csv`."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    grains = steps = 0
-    for index, _ in enumerate(case.stages):
-        blocks = read_profiles(folder / f"profile_{index}.txt")
-        heights = np.loadtxt(folder / f"height_{index}.txt", comments="#", ndmin=2)
-        writer.writerow(_steady(case, [table for _, table in blocks], heights[:, 1]))
-        steps = blocks[-1][0]
-        grains = round(float(blocks[-1][1][:, 2].sum()))
-    write_text(folder / TABLE, text.getvalue())
-    return Reduced(steps, grains, TABLE)
+    stages = [read_stage(folder, index) for index in range(len(case.stages))]
+    write_table(folder / TABLE, COLUMNS, [_steady(case, stage) for stage in stages])
+    return Reduced(stages[-1].steps, stages[-1].grains, TABLE)
 
 
 def _stage(case: SteadyShear, stage: ShearStage) -> dict[str, Any]:
@@ -139,7 +128,32 @@ def _stage(case: SteadyShear, stage: ShearStage) -> dict[str, Any]:
     }
 
 
-def read_profiles(path: Path) -> list[tuple[int, Array]]:
+@dataclass(frozen=True)
+class StageBlocks:
+    """What a stage of shear left, block by block: averages over the height (rows of bin, z, count, values), height [m].
+
+    steps   at the end, of the run
+    grains  that move
+    """
+
+    tables: list[Array]
+    tops: Array
+    steps: int
+
+    @property
+    def grains(self) -> int:
+        """Those of the last block."""
+        return round(float(self.tables[-1][:, 2].sum()))
+
+
+def read_stage(folder: Path, index: int) -> StageBlocks:
+    """The blocks of a stage of a run."""
+    blocks = _read_profiles(folder / f"profile_{index}.txt")
+    tops = np.loadtxt(folder / f"height_{index}.txt", comments="#", ndmin=2)[:, 1]
+    return StageBlocks([table for _, table in blocks], tops, blocks[-1][0])
+
+
+def _read_profiles(path: Path) -> list[tuple[int, Array]]:
     """The blocks of a `fix ave/spatial` file: (step, rows of bin, z, count, values)."""
     lines = [line.split() for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     blocks, at = [], 0
@@ -150,9 +164,9 @@ def read_profiles(path: Path) -> list[tuple[int, Array]]:
     return blocks
 
 
-def _steady(case: PlaneShear, blocks: list[Array], tops: Array) -> dict[str, float]:
+def _steady(case: PlaneShear, stage: StageBlocks) -> list[float]:
     """Averages over the bulk of a stage's blocks, with standard errors from the scatter between blocks."""
-    rows = np.array([bulk(case, block, top) for block, top in zip(blocks, tops, strict=False)])
+    rows = np.array([bulk(case, block, top) for block, top in zip(stage.tables, stage.tops, strict=False)])
     mean = rows.mean(axis=0)
     rate_, phi, xx, yy, zz, xz, kinetic = mean
     mu_blocks = rows[:, 5] / rows[:, 4]
@@ -174,10 +188,10 @@ def _steady(case: PlaneShear, blocks: list[Array], tops: Array) -> dict[str, flo
         yy,
         kinetic,
         error[4],
-        float(np.mean(tops)),
+        float(np.mean(stage.tops)),
         len(rows),
     )
-    return dict(zip(COLUMNS, (float(f"{value:.6g}") for value in values), strict=True))
+    return [float(f"{value:.6g}") for value in values]
 
 
 def bulk(case: ShearCell, block: Array, top: float) -> tuple[float, ...]:

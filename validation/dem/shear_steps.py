@@ -1,18 +1,13 @@
 """Shear of a packing at one speed after the other: friction and solid fraction over the strain of the bulk."""
 
-import csv
-import io
 import math
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from grainlaw.materials.atomic import write_text
-from grainlaw.validation.dem.cell import Reduced
+from grainlaw.validation.dem.cell import Reduced, write_table
 from grainlaw.validation.dem.description import ShearStep, ShearSteps
 from grainlaw.validation.dem.liggghts import contact_values, decks, template_texts
-from grainlaw.validation.dem.shear import bulk, cell, rate, read_profiles
+from grainlaw.validation.dem.shear import bulk, cell, rate, read_stage
 
 Files = dict[str, str]
 TABLE = "shear_steps.csv"
@@ -53,26 +48,20 @@ def templates(code: str) -> Files:
 
 def reduce(case: ShearSteps, folder: Path) -> Reduced:
     """Write stresses and solid fraction over time and strain of the bulk, at the middle of each block, to a table."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    stages = [read_stage(folder, index) for index in range(len(case.steps))]
+    rows = []
     time = strain = 0.0
-    steps = grains = 0
-    for index, step in enumerate(case.steps):
-        blocks = read_profiles(folder / f"profile_{index}.txt")
-        tops = np.loadtxt(folder / f"height_{index}.txt", comments="#", ndmin=2)[:, 1]
+    for index, (step, stage) in enumerate(zip(case.steps, stages, strict=True)):
         duration = _block(case, step) * case.time_step
-        for (_, table), top in zip(blocks, tops, strict=False):
+        for table, top in zip(stage.tables, stage.tops, strict=False):
             rate_, phi, xx, yy, zz, xz, _ = bulk(case, table, top)
             number = abs(rate_) * case.grains.mean_diameter / math.sqrt(zz / case.grains.density)
             middle = (time + 0.5 * duration, strain + 0.5 * rate_ * duration)
             values = (*middle, number, phi, zz, (xx + yy + zz) / 3.0, xz)
-            writer.writerow([index, *(f"{value:.6g}" for value in values)])
+            rows.append([index, *(f"{value:.6g}" for value in values)])
             time, strain = time + duration, strain + rate_ * duration
-        steps += blocks[-1][0]
-        grains = round(float(blocks[-1][1][:, 2].sum()))
-    write_text(folder / TABLE, text.getvalue())
-    return Reduced(steps, grains, TABLE)
+    write_table(folder / TABLE, COLUMNS, rows)
+    return Reduced(sum(stage.steps for stage in stages), stages[-1].grains, TABLE)
 
 
 def _step(case: ShearSteps, step: ShearStep) -> dict[str, Any]:

@@ -1,15 +1,11 @@
 """Drained triaxial compression of a periodic cube: the deck, and stresses and solid fraction over the axial strain."""
 
-import csv
-import io
 from pathlib import Path
 
 import numpy as np
 
-from grainlaw.materials.atomic import write_text
-from grainlaw.materials.errors import SimulationError
-from grainlaw.validation.dem.cell import Reduced
-from grainlaw.validation.dem.compression import gas_in_a_cube, rows_of_log, solid_volume
+from grainlaw.validation.dem.cell import Reduced, write_table
+from grainlaw.validation.dem.compression import finished_log, gas_in_a_cube, rows_of_log, solid_volume
 from grainlaw.validation.dem.description import Triaxial
 from grainlaw.validation.dem.liggghts import contact_values, decks, template_texts
 
@@ -58,19 +54,14 @@ def templates(code: str) -> Files:
 
 def reduce(case: Triaxial, folder: Path) -> Reduced:
     """Write stresses and solid fraction over the logarithmic axial strain to a table, the state at rest first."""
-    log = (folder / "log.txt").read_text(encoding="utf-8", errors="replace")
-    if "\nFINISHED" not in log:
-        raise SimulationError(f"LIGGGHTS stopped before the end; see {folder / 'log.txt'}")
-    resting, _, shearing = log.partition("\nSHEARING")
+    resting, _, shearing = finished_log(folder).partition("\nSHEARING")
     start = rows_of_log(resting, 8)[-1]
     rows = np.array(rows_of_log(shearing, 8))
     rows = rows[: len(rows) // AVERAGED * AVERAGED].reshape(-1, AVERAGED, 7).mean(axis=1)
     solid = solid_volume(folder / "grains.data")
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    for _, _, volume, height, xx, yy, zz in (start, *rows.tolist()):
-        values = (np.log(start[3] / height), solid / volume, zz, xx, yy)
-        writer.writerow([f"{value:.6g}" for value in values])
-    write_text(folder / TABLE, text.getvalue())
+    table = [
+        (np.log(start[3] / height), solid / volume, zz, xx, yy)
+        for _, _, volume, height, xx, yy, zz in (start, *rows.tolist())
+    ]
+    write_table(folder / TABLE, COLUMNS, [[f"{value:.6g}" for value in values] for values in table])
     return Reduced(int(rows_of_log(shearing, 8)[-1][0]), int(start[1]), TABLE)

@@ -1,18 +1,15 @@
 """Steady shear over a flat plane: its friction, and how fast the grains slip along it."""
 
-import csv
-import io
 import math
 from pathlib import Path
 
 import numpy as np
 
-from grainlaw.materials.atomic import write_text
-from grainlaw.validation.dem.cell import Reduced
+from grainlaw.validation.dem.cell import Reduced, write_table
 from grainlaw.validation.dem.description import WallShear
 from grainlaw.validation.dem.liggghts import template_texts
 from grainlaw.validation.dem.packing import Array
-from grainlaw.validation.dem.shear import bulk, files, read_profiles
+from grainlaw.validation.dem.shear import StageBlocks, bulk, files, read_stage
 
 __all__ = ["files", "reduce", "templates"]
 
@@ -41,34 +38,29 @@ def templates(code: str) -> dict[str, str]:
 
 def reduce(case: WallShear, folder: Path) -> Reduced:
     """Write the steady averages of every stage to a table; the friction is that of the plane, in equilibrium."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    steps = grains = 0
-    for index, _ in enumerate(case.stages):
-        blocks = read_profiles(folder / f"profile_{index}.txt")
-        tops = np.loadtxt(folder / f"height_{index}.txt", comments="#", ndmin=2)[:, 1]
-        rows = np.array([_row(case, table, top) for (_, table), top in zip(blocks, tops, strict=False)])
-        slip, fastest, rate_, phi, pressure, normal, shear = rows.mean(axis=0)
-        friction = rows[:, 6] / rows[:, 5]
-        speed = math.sqrt(normal / case.grains.density)
-        values = (
-            slip,
-            slip / speed,
-            rate_ * case.grains.mean_diameter / speed,
-            shear / normal,
-            friction.std(ddof=1) / math.sqrt(len(rows)),
-            normal,
-            pressure,
-            shear,
-            phi,
-            fastest,
-        )
-        writer.writerow([*(f"{value:.6g}" for value in values), len(rows)])
-        steps = blocks[-1][0]
-        grains = round(float(blocks[-1][1][:, 2].sum()))
-    write_text(folder / TABLE, text.getvalue())
-    return Reduced(steps, grains, TABLE)
+    stages = [read_stage(folder, index) for index in range(len(case.stages))]
+    write_table(folder / TABLE, COLUMNS, [_steady(case, stage) for stage in stages])
+    return Reduced(stages[-1].steps, stages[-1].grains, TABLE)
+
+
+def _steady(case: WallShear, stage: StageBlocks) -> list[object]:
+    rows = np.array([_row(case, table, top) for table, top in zip(stage.tables, stage.tops, strict=False)])
+    slip, fastest, rate_, phi, pressure, normal, shear = rows.mean(axis=0)
+    friction = rows[:, 6] / rows[:, 5]
+    speed = math.sqrt(normal / case.grains.density)
+    values = (
+        slip,
+        slip / speed,
+        rate_ * case.grains.mean_diameter / speed,
+        shear / normal,
+        friction.std(ddof=1) / math.sqrt(len(rows)),
+        normal,
+        pressure,
+        shear,
+        phi,
+        fastest,
+    )
+    return [*(f"{value:.6g}" for value in values), len(rows)]
 
 
 def _row(case: WallShear, block: Array, top: float) -> tuple[float, ...]:

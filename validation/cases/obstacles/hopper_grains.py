@@ -14,12 +14,14 @@ from grainlaw.mpm_core.simulation import Simulation
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, relative_error
 from grainlaw.validation.dem.catalogue import hopper
 from grainlaw.validation.dem.description import SlotHopper
+from grainlaw.validation.dem.hopper import BELOW, COLUMNS
 from grainlaw.validation.dem.judging.column import flat_friction
+from grainlaw.validation.dem.judging.data_table import by_seed
 from grainlaw.validation.dem.judging.fitted_laws import FittedLaw, fitted
 from grainlaw.validation.dem.judging.fitting_data import write_data
 from grainlaw.validation.dem.judging.judged_laws import JUDGED_LAWS
 from grainlaw.validation.dem.reduction import table_name
-from grainlaw.validation.reference.reference_set import read_reference_set
+from grainlaw.validation.reference.reference_set import ReferenceSet, read_reference_set
 from grainlaw.validation.scenes import advance, simulation_of
 
 Floats = NDArray[np.float64]
@@ -72,30 +74,25 @@ class Discharge:
         return float(np.std(slopes, ddof=1) / math.sqrt(BLOCKS))
 
 
-def discharges_of_grains(opening: float) -> list[Discharge]:
+def discharges_of_grains(reference: ReferenceSet, opening: float) -> list[Discharge]:
     """Of each packing of the reference set."""
-    rows = read_reference_set().tests[Path(table_name(hopper(opening).name)).stem]
     found = []
-    for seed in sorted({row["seed"] for row in rows}):
-        table = [
-            [row[name] for name in ("t", "mass_inside", "opening_solid_fraction", "opening_speed")]
-            for row in rows
-            if row["seed"] == seed
-        ]
+    for rows in by_seed(reference.test(Path(table_name(hopper(opening).name)).stem)):
+        table = [[row[name] for name in COLUMNS] for row in rows]
         times, inside, fractions, speeds = np.array(table).T
         found.append(Discharge(times, inside[0] - inside, float(inside[0]), fractions, speeds))
     return found
 
 
-def silo(case: SlotHopper, law: FittedLaw, mass: float, cells_across: int) -> dict[str, Any]:
+def silo(case: SlotHopper, law: FittedLaw, mass: float, friction: float, cells_across: int) -> dict[str, Any]:
     """Half of the silo as a scene, with the mass of the grains per width [kg/m], resting; its slot is open.
 
-    Walls and plates have the friction of shear over a flat plane: grains roll on it.
+    The friction is that of walls and plates.
     """
     half, edge = 0.5 * case.width, 0.5 * case.opening
     cell = half / round(half * cells_across / case.opening)
-    below, above = (math.ceil(length / cell) for length in (0.15, case.filling + cell))
-    deep, friction = PLATE * cell, flat_friction(read_reference_set())
+    below, above = (math.ceil(length / cell) for length in (BELOW, case.filling + cell))
+    deep = PLATE * cell
     # Undercut, so that the edge is as sharp as that of the plates of the grains.
     plate = [[edge, 0.0], [edge + deep, -deep], [half + deep, -deep], [half + deep, 0.0]]
     name = law.judged.law
@@ -117,7 +114,9 @@ def silo(case: SlotHopper, law: FittedLaw, mass: float, cells_across: int) -> di
     }
 
 
-def discharge_of_law(case: SlotHopper, law: FittedLaw, mass: float, cells_across: int = CELLS_ACROSS) -> Discharge:
+def discharge_of_law(
+    case: SlotHopper, law: FittedLaw, mass: float, friction: float, cells_across: int = CELLS_ACROSS
+) -> Discharge:
     """Of a law in the silo of a case."""
     rows = [(0.0, 0.0, 0.0, 0.0)]
     half_layer = 0.5 * case.grains.mean_diameter
@@ -132,39 +131,43 @@ def discharge_of_law(case: SlotHopper, law: FittedLaw, mass: float, cells_across
         rows.append((present.time, 2.0 * left, inside / solid, -float(body.velocity[1, within].mean())))
 
     outputs = round(case.end / case.output_interval)
-    advance(simulation_of(silo(case, law, mass, cells_across)), case.end, observe, outputs)
+    advance(simulation_of(silo(case, law, mass, friction, cells_across)), case.end, observe, outputs)
     times, masses, fractions, speeds = np.array(rows).T
     return Discharge(times, masses, mass, fractions, speeds)
 
 
-def laws_fitted(names: Sequence[str]) -> list[FittedLaw]:
+def laws_fitted(reference: ReferenceSet, names: Sequence[str]) -> list[FittedLaw]:
     """Fitted to the element tests of the grains."""
     judged = [law for law in JUDGED_LAWS if law.law in names]
     given = judged[0].given
     with TemporaryDirectory() as folder:
-        write_data(read_reference_set(), Path(folder), given["grain_density"], given["grain_diameter"])
+        write_data(reference, Path(folder), given["grain_density"], given["grain_diameter"])
         return [fitted(law, Path(folder)) for law in judged]
 
 
-def mean_of_grains(opening: float) -> tuple[float, float]:
-    """The mean rate of the packings [kg/(m s)], and the mean mass in them [kg/m]."""
-    grains = discharges_of_grains(opening)
+def mean_of_grains(grains: Sequence[Discharge]) -> tuple[float, float]:
+    """The mean rate of some packings [kg/(m s)], and the mean mass in them [kg/m]."""
     return float(np.mean([one.rate for one in grains])), float(np.mean([one.total for one in grains]))
 
 
 def measure(effort: Effort) -> Evidence:
-    """mu(I), phi(I) through the widest slot; in full three laws through three."""
-    is_quick = effort is Effort.QUICK
-    laws = laws_fitted(JUDGED[:1] if is_quick else JUDGED + TOLD)
+    """mu(I), phi(I) through the widest slot; in full three laws through three.
+
+    Walls and plates have the friction of shear over a flat plane: grains roll on it.
+    """
+    is_quick, reference = effort is Effort.QUICK, read_reference_set()
+    friction = flat_friction(reference)
+    laws = laws_fitted(reference, JUDGED[:1] if is_quick else JUDGED + TOLD)
     found, curves, notes = [], [], []
     for opening in OPENINGS[-1:] if is_quick else OPENINGS:
         case, where = hopper(opening), f"W = {opening:g} m"
-        rate, mass = mean_of_grains(opening)
-        for grains in discharges_of_grains(opening):
+        packings = discharges_of_grains(reference, opening)
+        rate, mass = mean_of_grains(packings)
+        for grains in packings:
             notes.append(f"grains, {where}: {grains.told}")
             curves.append(curve(f"grains, {where}", grains.times, grains.masses, "reference"))
         for law in laws:
-            run = discharge_of_law(case, law, mass)
+            run = discharge_of_law(case, law, mass, friction)
             label = f"{law.judged.title}, {where}"
             notes.append(f"{label}: {run.told}, {run.rate / rate - 1.0:+.1%}")
             curves.append(curve(label, run.times, run.masses))
@@ -176,13 +179,14 @@ def measure(effort: Effort) -> Evidence:
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """The law with too little friction, through the widest slot."""
-    (law,) = laws_fitted(JUDGED[:1])
+    reference = read_reference_set()
+    (law,) = laws_fitted(reference, JUDGED[:1])
     slippery = replace(
         law, parameters=law.parameters | {name: LESS_FRICTION * law.parameters[name] for name in FRICTIONS}
     )
     opening = OPENINGS[-1]
-    rate, mass = mean_of_grains(opening)
-    run = discharge_of_law(hopper(opening), slippery, mass)
+    rate, mass = mean_of_grains(discharges_of_grains(reference, opening))
+    run = discharge_of_law(hopper(opening), slippery, mass, flat_friction(reference))
     return (relative_error(f"rate, W = {opening:g} m", "kg/(m s)", run.rate, rate, BAND),)
 
 

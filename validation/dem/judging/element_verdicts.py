@@ -120,19 +120,11 @@ def _start_of_shear(law: FittedLaw, path: Path) -> list[Distance]:
     of_law = {name: values[FINER - 1 :: FINER] for name, values in whole.items()}
     peak, peak_of_grains = int(np.argmax(whole[FRICTION])), int(np.argmax(grains[FRICTION]))
     after = (strains > AFTER_PEAK[0]) & (strains < AFTER_PEAK[1])
-    excess = of_law[FRICTION][after] / grains[FRICTION][after] - 1.0
-    furthest = int(np.argmax(np.abs(excess)))
     dense = data.statements["density"] / data.statements["grain_density"]
     return [
         _relative("peak friction", "1", whole[FRICTION][peak], grains[FRICTION][peak_of_grains], PEAK_BAND),
         _relative("strain of the peak", "1", finer[peak], strains[peak_of_grains], PEAK_STRAIN_BAND),
-        _relative(
-            "friction after the peak",
-            "1",
-            of_law[FRICTION][after][furthest],
-            grains[FRICTION][after][furthest],
-            SOFTENING_BAND,
-        ),
+        _furthest("friction after the peak", of_law[FRICTION][after], grains[FRICTION][after]),
         _relative(
             "dilation", "1", np.log(dense / of_law[FRACTION][-1]), np.log(dense / grains[FRACTION][-1]), DILATION_BAND
         ),
@@ -144,12 +136,9 @@ def _triaxial(law: FittedLaw, path: Path) -> list[Distance]:
     grains = {measured.name: measured.values for measured in data.measured}
     of_law = _answers(law, data, data.abscissa)
     after = (data.abscissa > AFTER_TRIAXIAL_PEAK[0]) & (data.abscissa < AFTER_TRIAXIAL_PEAK[1])
-    excess = of_law[RATIO][after] / grains[RATIO][after] - 1.0
-    furthest = int(np.argmax(np.abs(excess)))
-    ratios = of_law[RATIO][after][furthest], grains[RATIO][after][furthest]
     return [
         _relative("triaxial peak", "1", of_law[RATIO].max(), grains[RATIO].max(), PEAK_BAND),
-        _relative("triaxial q/p after the peak", "1", *ratios, SOFTENING_BAND),
+        _furthest("triaxial q/p after the peak", of_law[RATIO][after], grains[RATIO][after]),
         _relative("triaxial dilation", "1", of_law[VOLUME][-1], grains[VOLUME][-1], DILATION_BAND),
     ]
 
@@ -189,6 +178,12 @@ def _steady_shear(law: FittedLaw, path: Path, name: str = "steady") -> list[Dist
                 squares[found.name] += ((of_law[found.name] / found.values - 1.0) ** 2).tolist()
     said = {FRICTION: f"{name} friction", FRACTION: f"{name} solid fraction"}
     return [_scatter(said[quantity], found, STEADY_BAND) for quantity, found in squares.items()]
+
+
+def _furthest(name: str, of_law: Array, grains: Array) -> Distance:
+    """Where the law is farthest from the grains, relative to them."""
+    row = int(np.argmax(np.abs(of_law / grains - 1.0)))
+    return _relative(name, "1", of_law[row], grains[row], SOFTENING_BAND)
 
 
 def _relative(name: str, unit: str, measured: float, reference: float, band: float) -> Distance:
