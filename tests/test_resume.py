@@ -1,5 +1,6 @@
 """A run that was stopped and goes on leaves the same bits as one that was not."""
 
+import contextlib
 import errno
 import os
 import re
@@ -16,6 +17,7 @@ from scenes_for_tests import COLUMN, FALLING_SPRING, call_command_line, changed,
 from grainlaw.materials import InputError
 from grainlaw.mpm_core import Scene, run
 from grainlaw.mpm_core.output import recorder
+from grainlaw.mpm_core.output.checkpoint import how_to_go_on
 from grainlaw.mpm_core.output.frame_series import read_collection
 from grainlaw.mpm_core.output.history import read_history
 
@@ -333,7 +335,8 @@ def test_a_disk_that_is_full_from_the_start_is_one_line(tmp_path, monkeypatch, c
 
 
 def test_ctrl_c_says_how_to_go_on(tmp_path):
-    scene_file, out = write_scene(tmp_path / "scene.toml", with_output("vtu", FINE)), tmp_path / "out"
+    endless = with_output("vtu", {**FINE, "time.end": 60.0})  # so that no busy machine ends it before the signal comes
+    scene_file, out = write_scene(tmp_path / "scene.toml", endless), tmp_path / "out"
     command = [sys.executable, "-m", "grainlaw", "run", scene_file, "--out", out, "--threads", "1"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 120
@@ -350,3 +353,14 @@ def test_ctrl_c_says_how_to_go_on(tmp_path):
     assert "Traceback" not in errors
     time_of_checkpoint = float(re.search(r"t = (\S+) s", line)[1])
     assert time_of_checkpoint == pytest.approx(read_collection(out)[-1].time, abs=0.031)
+
+
+def test_ctrl_c_that_a_callback_swallowed_still_stops_the_run(tmp_path):
+    def swallow(simulation, dt):
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        run(Scene.from_dict(COLUMN), tmp_path / "out", progress=swallow)
+    assert stopped.value.__notes__ == [f"stopped by Ctrl-C; {how_to_go_on(tmp_path / 'out')}"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

@@ -19,6 +19,7 @@ from grainlaw.mpm_core.output.run_folder import RunFolder
 from grainlaw.mpm_core.output.summary import FinalState, RunSummary, read_summary, write_summary
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.simulation import Simulation
+from grainlaw.mpm_core.stepping.interrupts import Interrupts, interrupts_noted
 from grainlaw.mpm_core.stepping.peak_memory import peak_memory
 from grainlaw.mpm_core.stepping.resumed_scene import is_finished, resumed_scene
 
@@ -66,7 +67,8 @@ def run(
 def _run(simulation: Simulation, folder: Path, clock: Clock, started: float, progress: Progress | None) -> RunSummary:
     recorder = Recorder(folder, simulation, clock)
     try:
-        first_steps = _advance(simulation, recorder, started, progress)
+        with interrupts_noted() as interrupts:
+            first_steps = _advance(simulation, recorder, started, progress, interrupts)
         recorder.finish(time.perf_counter() - started)
     finally:
         recorder.close()
@@ -120,7 +122,9 @@ def built_simulation(scene: Scene, threads: int) -> Simulation:
         raise InputError(f"{scene.source}: grid: {cells} cells do not fit into memory") from error
 
 
-def _advance(simulation: Simulation, recorder: Recorder, started: float, progress: Progress | None) -> float:
+def _advance(
+    simulation: Simulation, recorder: Recorder, started: float, progress: Progress | None, interrupts: Interrupts
+) -> float:
     """Step to the end. Returns the wall time that the first step took longer than the second one [s]."""
     durations: list[float] = []
     if simulation.steps == 0:
@@ -134,6 +138,7 @@ def _advance(simulation: Simulation, recorder: Recorder, started: float, progres
             recorder.record(now - started)
             if progress is not None:
                 progress(simulation, dt)
+            interrupts.raise_lost()
             before = time.perf_counter()
     return durations[0] - durations[1] if len(durations) == 2 else 0.0
 
