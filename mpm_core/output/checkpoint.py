@@ -3,8 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import h5py
+from numpy.typing import NDArray
 
 from grainlaw.materials import InputError, atomic
 from grainlaw.materials.compilation import mark_of_law
@@ -54,7 +56,7 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
             file.create_dataset(f"active/{name}", data=getattr(simulation.active.columns, name))
         for number, body in enumerate(simulation.bodies):
             group = file.create_group(f"body/{number}")
-            group.create_dataset("points", data=body.points)
+            _write_rows(group, "points", body.points)
             group.create_dataset("ids", data=body.ids)
             group.create_dataset("stripe_starts", data=body.stripe_starts)
             group.attrs.update(law=body.law.name, law_mark=mark_of_law(body.law), rows=", ".join(body.row_names))
@@ -72,6 +74,13 @@ def write_checkpoint(folder: Path, simulation: Simulation, clock: Clock) -> None
             sleep.create_dataset("withheld", data=simulation.sleep.withheld, compression="gzip")
             for number, positions in enumerate(simulation.sleep.positions):
                 sleep.create_dataset(f"positions/{number}", data=positions)
+
+
+def _write_rows(group: h5py.Group, name: str, values: NDArray[Any]) -> None:
+    """Write an array row by row: given whole, what lies apart in memory would be copied first."""
+    rows = group.create_dataset(name, values.shape, values.dtype)
+    for number, row in enumerate(values):
+        rows[number] = row
 
 
 def read_checkpoint(folder: Path, simulation: Simulation) -> Clock:

@@ -5,6 +5,7 @@ units and time; they are put into the finished XML, where VTK keeps them: the un
 key `UNITS_LABEL`, time and step as field data (`TimeValue` is the name that the readers of VTK look for).
 """
 
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -15,7 +16,7 @@ from grainlaw.materials import InputError, atomic
 from grainlaw.mpm_core.output.frame import Field, Frame
 
 _POSITION_ARRAY = "Points"
-_END_OF_ARRAY = b"</DataArray>"
+_START_OF_ARRAY, _END_OF_ARRAY = b"<DataArray ", b"</DataArray>"
 # Bytes in which the number of points is told.
 _HEAD = 2048
 _START_OF_GRID = b"<UnstructuredGrid>"
@@ -30,8 +31,13 @@ def write_vtu(path: Path, frame: Frame) -> None:
         point_data={field.name: field.stored_values() for field in frame.fields},
     )
     with atomic.replacing(path) as partial:
-        meshio.vtu.write(partial, mesh, compression="zlib")
-        partial.write_bytes(_with_time_and_units(partial.read_bytes(), frame))
+        plain = partial.with_name(f"{partial.name}-plain")
+        try:
+            meshio.vtu.write(plain, mesh, compression="zlib")
+            with plain.open("rb") as lines, partial.open("wb") as told:
+                told.writelines(_with_time_and_units(lines, frame))
+        finally:
+            plain.unlink(missing_ok=True)
 
 
 def read_vtu(path: Path, documentation: dict[str, tuple[str, str]]) -> Frame:
@@ -71,25 +77,29 @@ def _empty_frame(path: Path, documentation: dict[str, tuple[str, str]]) -> Frame
     return Frame(float(told["TimeValue"]), int(told["step"]), np.empty((0, 3)), fields)
 
 
-def _with_time_and_units(xml: bytes, frame: Frame) -> bytes:
-    """The XML of meshio with the field data at the head of the grid and a unit at the end of each point array."""
-    parts = []
-    position = xml.index(_START_OF_GRID) + len(_START_OF_GRID)
-    parts += [xml[:position], _time_and_step(frame)]
-    for name, unit in [(_POSITION_ARRAY, "m"), *((field.name, field.unit) for field in frame.fields)]:
-        end = xml.index(_END_OF_ARRAY, xml.index(f'Name="{name}"'.encode(), position))
-        parts += [xml[position:end], _unit_key(unit)]
-        position = end
-    parts.append(xml[position:])
-    return b"".join(parts)
+def _with_time_and_units(lines: Iterable[bytes], frame: Frame) -> Iterator[bytes]:
+    """The XML of meshio with the field data at the head of the grid and a unit at the end of each point array.
+
+    The values of an array are one line, so that no more than one of them is in memory.
+    """
+    units = {_POSITION_ARRAY: "m"} | {field.name: field.unit for field in frame.fields}
+    name = ""
+    for line in lines:
+        if line.startswith(_START_OF_ARRAY):
+            name = ElementTree.fromstring(line + _END_OF_ARRAY).attrib["Name"]
+        elif line.startswith(_END_OF_ARRAY) and name in units:
+            yield _unit_key(units[name])
+        yield line
+        if line.startswith(_START_OF_GRID):
+            yield _time_and_step(frame)
 
 
 def _time_and_step(frame: Frame) -> bytes:
     return (
-        "\n<FieldData>\n"
+        "<FieldData>\n"
         f'<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{frame.time!r}</DataArray>\n'
         f'<DataArray type="Int64" Name="step" NumberOfTuples="1" format="ascii">{frame.step}</DataArray>\n'
-        "</FieldData>"
+        "</FieldData>\n"
     ).encode()
 
 
