@@ -18,6 +18,7 @@ from grainlaw.validation.case import (
     scaled_error,
 )
 from grainlaw.validation.cases.collapses.scaling import END, PowerLaw, Scaling, fitted, listed, outside, runout_of
+from grainlaw.validation.reference.reference_set import read_reference_set
 from grainlaw.validation.scenes import advance, shipped_simulation
 
 SCENE, LAW = "cylinder_collapse_axisymmetric", "mu_i_lc"
@@ -37,12 +38,9 @@ SCALINGS = (LUBE, LAJEUNESSE)
 GRAINS = {0.5: 0.50, 1.0: 1.25, 2.0: 2.42, 3.0: 3.42}
 HEIGHTS_OF_GRAINS = (0.63, 0.71)
 LOWEST_HIGH = 1.0
-# Our own LIGGGHTS runs, 15 and 18 diameters in the radius: where grains cover a tenth of the floor, the radius over r0
-# within which 98 % of the mass lies, and heights.
-OWN_GRAINS = {0.5: 0.56, 1.0: 1.13, 2.0: 2.13}
-OWN_RADII = {0.5: 1.40, 1.0: 1.89, 2.0: 2.79}
+# Our own LIGGGHTS runs, 15 and 18 diameters in the radius, two packings each: where grains cover a tenth of the floor.
+OWN_GRAINS = {0.5: 0.56, 1.0: 1.10, 2.0: 2.13}
 RADIUS_BAND = 5e-2
-OWN_HEIGHTS = {0.5: 0.50, 1.0: 0.86, 2.0: 0.88}
 # Between these, where both regimes meet, a value takes part in no exponent.
 LOW, TALL = 1.0, 2.0
 
@@ -109,11 +107,21 @@ def within_published(aspect_ratio: float, found: Pile) -> tuple[Measurement, ...
     return outside(f"{label}, runout", found.runout, runouts), outside(f"{label}, height", found.height, heights)
 
 
+def of_own_grains(series: str) -> dict[float, float]:
+    """The last value of a series [m] over r0, by aspect ratio: the mean over the packings of our grains."""
+    return {
+        round(cylinders.aspect_ratio, 2): float(
+            np.mean([run.of(series)[-1] / run.description["half_width"] for run in cylinders.runs])
+        )
+        for cylinders in read_reference_set().cylinders("glued")
+    }
+
+
 def beside_grains(piles: dict[float, Pile]) -> list[Measurement]:
     """The radius of nearly all of the mass against that of our grains, to which the law is fitted: one definition."""
     return [
         relative_error(f"a = {a:g}, radius of 98 % of the mass, our grains", "1", piles[a].radius, own, RADIUS_BAND)
-        for a, own in OWN_RADII.items()
+        for a, own in of_own_grains("radius_of_98_percent").items()
         if a in piles
     ]
 
@@ -162,7 +170,7 @@ def figures(
         curve(LUBE.source, ratios, [height_of_lube(a) for a in ratios], "reference"),
         curve("grains, published: lowest", [LOWEST_HIGH, 8.0], [lowest] * 2, "control"),
         curve("grains, published: highest", [LOWEST_HIGH, 8.0], [largest] * 2, "control"),
-        _points("our grains", OWN_HEIGHTS, "control"),
+        _points("our grains", of_own_grains("height"), "control"),
         _points("mu(I)-LC", heights),
     ]
     axis = "a = H0/r0 [1]"
