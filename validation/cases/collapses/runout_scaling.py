@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from grainlaw.mpm_core.output.observables import shape_of
+from grainlaw.mpm_core.output.observables import MASS_BETWEEN_FRONTS
 from grainlaw.plugins.mu_i.friction import own_inertial_number_constant
 from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement, curve, scaled_error
 from grainlaw.validation.cases.collapses.scaling import END, Scaling, fitted, listed, outside, runout_of
@@ -69,7 +69,9 @@ def runouts(aspect_ratio: float, effort: Effort, static_friction: float = FRICTI
     """Of a column with a friction of its own."""
     simulation = simulation_of(scene(aspect_ratio, effort, static_friction))
     advance(simulation, simulation.scene.time.end)
-    return Runouts(runout_of(simulation, WIDTH), shape_of(simulation).runout / WIDTH - 1.0)
+    (body,) = simulation.bodies  # of points of equal mass
+    within = float(np.quantile(body.positions[0], MASS_BETWEEN_FRONTS))
+    return Runouts(runout_of(simulation, WIDTH), within / WIDTH - 1.0)
 
 
 def within_published(aspect_ratio: float, found: float) -> Measurement:
