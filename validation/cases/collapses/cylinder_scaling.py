@@ -18,7 +18,7 @@ from grainlaw.validation.case import (
     scaled_error,
 )
 from grainlaw.validation.cases.collapses.scaling import END, PowerLaw, Scaling, fitted, listed, outside, runout_of
-from grainlaw.validation.reference.reference_set import read_reference_set
+from grainlaw.validation.reference.reference_set import ReferenceSet, read_reference_set
 from grainlaw.validation.scenes import advance, shipped_simulation
 
 SCENE, LAW = "cylinder_collapse_axisymmetric", "mu_i_lc"
@@ -107,21 +107,21 @@ def within_published(aspect_ratio: float, found: Pile) -> tuple[Measurement, ...
     return outside(f"{label}, runout", found.runout, runouts), outside(f"{label}, height", found.height, heights)
 
 
-def of_own_grains(series: str) -> dict[float, float]:
+def of_grains(reference: ReferenceSet, series: str) -> dict[float, float]:
     """The last value of a series [m] over r0, by aspect ratio: the mean over the packings of our grains."""
     return {
         round(cylinders.aspect_ratio, 2): float(
             np.mean([run.of(series)[-1] / run.description["half_width"] for run in cylinders.runs])
         )
-        for cylinders in read_reference_set().cylinders("glued")
+        for cylinders in reference.cylinders("glued")
     }
 
 
-def beside_grains(piles: dict[float, Pile]) -> list[Measurement]:
+def beside_grains(reference: ReferenceSet, piles: dict[float, Pile]) -> list[Measurement]:
     """The radius of nearly all of the mass against that of our grains, to which the law is fitted: one definition."""
     return [
         relative_error(f"a = {a:g}, radius of 98 % of the mass, our grains", "1", piles[a].radius, own, RADIUS_BAND)
-        for a, own in of_own_grains("radius_of_98_percent").items()
+        for a, own in of_grains(reference, "radius_of_98_percent").items()
         if a in piles
     ]
 
@@ -131,7 +131,8 @@ def measure(effort: Effort) -> Evidence:
     piles = {a: pile(a, effort) for a in ASPECT_RATIOS[effort]}
     runouts, covered, radii, heights = ({a: found[part] for a, found in piles.items()} for part in range(4))
     measurements = [measurement for a, found in piles.items() for measurement in within_published(a, found)]
-    measurements += beside_grains(piles)
+    reference = read_reference_set()
+    measurements += beside_grains(reference, piles)
     notes = [
         listed("(r - r0)/r0", runouts),
         listed(f"(r - r0)/r0 where grains cover {COVERED:g} of the floor", covered),
@@ -146,7 +147,11 @@ def measure(effort: Effort) -> Evidence:
         }
         measurements += [exponent(label, law, published) for label, (law, published) in laws.items()]
         notes += [f"{label}: {law}" for label, (law, _) in laws.items()]
-    return Evidence(tuple(measurements), figures=figures(runouts, covered, heights), notes=tuple(notes))
+    return Evidence(
+        tuple(measurements),
+        figures=figures(runouts, covered, heights, of_grains(reference, "height")),
+        notes=tuple(notes),
+    )
 
 
 def exponent(label: str, law: PowerLaw, published: float) -> Measurement:
@@ -155,9 +160,12 @@ def exponent(label: str, law: PowerLaw, published: float) -> Measurement:
 
 
 def figures(
-    runouts: dict[float, float], covered: dict[float, float], heights: dict[float, float]
+    runouts: dict[float, float],
+    covered: dict[float, float],
+    heights: dict[float, float],
+    heights_of_grains: dict[float, float],
 ) -> tuple[Figure, ...]:
-    """Both over the aspect ratio, with what was published."""
+    """Both over the aspect ratio, with what was published, and our grains."""
     ratios, lowest, largest = np.geomspace(0.5, 8.0, 60), min(HEIGHTS_OF_GRAINS), max(HEIGHTS_OF_GRAINS)
     of_runout = [
         *(curve(one.source, ratios, [one.runout(a) for a in ratios], "reference") for one in SCALINGS),
@@ -170,7 +178,7 @@ def figures(
         curve(LUBE.source, ratios, [height_of_lube(a) for a in ratios], "reference"),
         curve("grains, published: lowest", [LOWEST_HIGH, 8.0], [lowest] * 2, "control"),
         curve("grains, published: highest", [LOWEST_HIGH, 8.0], [largest] * 2, "control"),
-        _points("our grains", of_own_grains("height"), "control"),
+        _points("our grains", heights_of_grains, "control"),
         _points("mu(I)-LC", heights),
     ]
     axis = "a = H0/r0 [1]"
@@ -187,7 +195,7 @@ def _points(label: str, found: dict[float, float], role: str = "measured") -> Cu
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """Hardly any friction."""
     found = pile(2.0, Effort.QUICK, {"static_friction": 0.05, "dynamic_friction": 0.43})
-    return (*within_published(2.0, found), *beside_grains({2.0: found}))
+    return (*within_published(2.0, found), *beside_grains(read_reference_set(), {2.0: found}))
 
 
 CASE = Case(
