@@ -23,7 +23,7 @@ from grainlaw.mpm_core.kernels.shape_functions import BASES
 from grainlaw.mpm_core.kernels.step_report import StepReport, step_report, together
 from grainlaw.mpm_core.kernels.volume_coupling import STEPS_PER_COUPLING
 from grainlaw.mpm_core.kernels.wall_clearance import WallClearance
-from grainlaw.mpm_core.kernels.walls import Wall, WallKind, active_layers, hold_at_walls
+from grainlaw.mpm_core.kernels.walls import active_layers, hold_at_walls
 from grainlaw.mpm_core.ledger import Ledger
 from grainlaw.mpm_core.obstacles.free_room import FreeRoom
 from grainlaw.mpm_core.obstacles.obstacles import Obstacles
@@ -33,6 +33,7 @@ from grainlaw.mpm_core.parallel.sorting import LONGEST_DRIFT
 from grainlaw.mpm_core.parallel.threads import use_threads
 from grainlaw.mpm_core.scene.build_inflows import build_inflows, check_mouths
 from grainlaw.mpm_core.scene.build_obstacles import build_obstacles, check_start
+from grainlaw.mpm_core.scene.build_walls import build_walls, open_sides, periodic_axes
 from grainlaw.mpm_core.scene.initial_state import build_bodies
 from grainlaw.mpm_core.scene.model import Scene
 from grainlaw.mpm_core.scene.resolution import refuse_coarse_stress
@@ -63,10 +64,10 @@ class Simulation:
         self.threads = threads
         use_threads(threads)
         self.basis = BASES[scene.transfer.basis]
-        self.periodic_axes = _periodic_axes(scene)
+        self.periodic_axes = periodic_axes(scene)
         self.space = scene.in_space
         size = (scene.grid.lower, scene.grid.cells, scene.grid.cell_size)
-        self.grid = Grid(self.space, *size, self.periodic_axes, scene.precision, _open_sides(scene))
+        self.grid = Grid(self.space, *size, self.periodic_axes, scene.precision, open_sides(scene))
         self.fields = chosen_fields(scene)
         self.bodies = build_bodies(scene, keeps_shear_strain="shear_strain" in self.fields)
         self.initial_points = sum(body.count for body in self.bodies)
@@ -80,7 +81,7 @@ class Simulation:
             body.choose_kernels(self.basis)
         initial_elastic = self.elastic_energy()
         self.build_time = time.perf_counter() - started
-        self.walls = _walls(scene)
+        self.walls = build_walls(scene)
         self.obstacles = Obstacles(build_obstacles(scene), FreeRoom(self.grid, self.periodic_axes))
         check_start(scene, self.obstacles.all, bodies_at_start)
         self.thin_plates = ThinPlates(self.obstacles.all, self.grid.cell_size)
@@ -378,24 +379,3 @@ class Simulation:
         for axis, (lowest, highest, (lower, upper)) in enumerate(extents):
             if lowest < lower or highest > upper:
                 raise failure_outside(self._when, self.bodies, axis, lower, upper)
-
-
-def _walls(scene: Scene) -> list[Wall]:
-    walls = []
-    for axis, sides in enumerate(scene.in_space.sides):
-        for side in sides:
-            section = scene.boundary.of(side)
-            if section.kind not in ("periodic", "open"):
-                kind, is_lower = WallKind[section.kind.upper()], side == sides[0]
-                walls.append(Wall(axis, is_lower, kind, section.coefficient, scene.wall_velocity(side)))
-    return walls
-
-
-def _open_sides(scene: Scene) -> list[tuple[bool, bool]]:
-    kinds = ([scene.boundary.kind_of(side) for side in pair] for pair in scene.in_space.sides)
-    return [(below == "open", above == "open") for below, above in kinds]
-
-
-def _periodic_axes(scene: Scene) -> list[int]:
-    kinds = (scene.boundary.of(lower).kind for lower, _ in scene.in_space.sides)
-    return [axis for axis, kind in enumerate(kinds) if kind == "periodic"]
