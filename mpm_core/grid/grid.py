@@ -5,6 +5,7 @@ nodes; columns are numbered in the same way. Work on the grid follows columns, a
 """
 
 import math
+import mmap
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -13,7 +14,6 @@ from numpy.typing import NDArray
 
 from grainlaw.materials.precision import PRECISIONS
 from grainlaw.mpm_core.kernels.simd.registers import LANES
-from grainlaw.mpm_core.layout import CACHE_LINE
 from grainlaw.mpm_core.space import Space
 
 # Numbers of a node, two quads, in double precision a cache line.
@@ -112,12 +112,13 @@ class Grid:
 
 
 def _aligned_zeros(count: int, number: type[np.floating[Any]]) -> NDArray[Any]:
-    """Zeroed numbers from the start of a cache line on, of which a node fills one, or half; no memory is touched."""
-    line = CACHE_LINE // np.dtype(number).itemsize
+    """Zeroed numbers in whole cache lines, of which a node fills one, or half; no memory is touched.
+
+    Mapped as it is: NumPy asks for huge pages, of which every one along a pile's columns holds air for the most part.
+    """
     try:
-        buffer = np.zeros(count + line, number)
-    except ValueError as error:
-        # More than an array may hold, which is more than there is of memory.
+        pages = mmap.mmap(-1, count * np.dtype(number).itemsize, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
+    except (OverflowError, ValueError, OSError) as error:
+        # More than may be mapped, which is more than there is of memory.
         raise MemoryError(f"{count} numbers") from error
-    start = (-buffer.ctypes.data % CACHE_LINE) // buffer.itemsize
-    return buffer[start : start + count]
+    return np.frombuffer(pages, number)
