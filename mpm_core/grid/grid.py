@@ -117,8 +117,10 @@ def _aligned_zeros(count: int, number: type[np.floating[Any]]) -> NDArray[Any]:
     Mapped as it is: NumPy asks for huge pages, of which every one along a pile's columns holds air for the most part.
     """
     try:
-        pages = mmap.mmap(-1, count * np.dtype(number).itemsize, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
+        # A mapping of no bytes is refused, and where bulk quantities are part of a node their own array has none.
+        size = max(count * np.dtype(number).itemsize, 1)
+        pages = mmap.mmap(-1, size, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS)
     except (OverflowError, ValueError, OSError) as error:
         # More than may be mapped, which is more than there is of memory.
         raise MemoryError(f"{count} numbers") from error
-    return np.frombuffer(pages, number)
+    return np.frombuffer(pages, number, count)
