@@ -87,6 +87,7 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "obstacles.hopper_discharge",
         "obstacles.hopper_discharge_3d",
         "obstacles.hopper_grains",
+        "obstacles.drum_grains",
     ),
     # The piles of other MPM codes on the paper's column.
     "mpm": (

@@ -11,6 +11,7 @@ from grainlaw.validation.dem.description import (
     Floor,
     Grains,
     PlaneShear,
+    RoughDrum,
     ShearStage,
     ShearStep,
     ShearSteps,
@@ -64,6 +65,18 @@ def hopper(opening: float) -> SlotHopper:
         name=f"hopper-w{opening:g}",
         purpose=f"flat silo that empties through a slot of {opening:g} m",
         opening=opening,
+        liggghts_seeds=TWO,
+    )
+
+
+def drum(radius: float) -> RoughDrum:
+    """The half-full drum of one radius [m]; all have the same Froude number."""
+    return RoughDrum(
+        name=f"drum-r{radius:g}",
+        purpose=f"half-full rough drum of {radius:g} m radius that turns steadily",
+        radius=radius,
+        # Contacts are softer under a few kPa.
+        time_step=5e-5,
         liggghts_seeds=TWO,
     )
 
@@ -173,6 +186,7 @@ CASES: tuple[AnyCase, ...] = (
     cylinder(1, radius=0.225),
     cylinder(2, radius=0.225),
     *(hopper(opening) for opening in (0.15, 0.2, 0.25)),
+    *(drum(radius) for radius in (0.3, 0.45)),
     variant("stiff", "Young's modulus 1e9 Pa", contact=Contact(youngs_modulus=1e9), time_step=1e-5),
     variant("deep", "depth of 8 mean diameters", depth=0.12),
     variant(

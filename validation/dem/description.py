@@ -1,5 +1,6 @@
 """What a DEM case is: grains, contact law, geometry, seeds and output times, said once for both codes."""
 
+import math
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -223,4 +224,41 @@ class SlotHopper(Case):
     output_interval: Positive = 0.018
 
 
-AnyCase = Collapse | CylinderCollapse | PlaneShear | WallShear | ShearSteps | Compression | Triaxial | SlotHopper
+class RoughDrum(Case):
+    """A drum, half full, that turns steadily about its level axis; plane in the mean, periodic over `depth`.
+
+    Its wall is a layer of glued grains that turn with it, so that the packing begins at `radius`. The packing settles
+    in the resting drum with low friction, is cut at the level of the axis (grains whose centre lies above are taken
+    out), relaxes with the full friction, and the drum turns from t = 0 on. Means are taken over an angle after another
+    one [rad], in which it turns until grains run down, and by half a turn more: then every grain has run down once.
+    """
+
+    kind: Literal["rough-drum"] = "rough-drum"
+    radius: Positive
+    froude_number: Positive = 0.004
+    depth: Positive = 0.06
+    gravity: Positive = 9.81
+    relaxation: Positive = 0.15
+    transient_angle: Positive = 3.8
+    averaged_angle: Positive = 1.6
+    output_interval: Positive = 0.05
+
+    @property
+    def steady_from(self) -> float:
+        """When the means begin [s]."""
+        return self.transient_angle / self.angular_velocity
+
+    @property
+    def end(self) -> float:
+        """When they end [s]."""
+        return self.steady_from + self.averaged_angle / self.angular_velocity
+
+    @property
+    def angular_velocity(self) -> float:
+        """Of the drum [rad/s], from the Froude number w^2 R/g; carries grains up at x > 0."""
+        return math.sqrt(self.froude_number * self.gravity / self.radius)
+
+
+AnyCase = (
+    Collapse | CylinderCollapse | PlaneShear | WallShear | ShearSteps | Compression | Triaxial | SlotHopper | RoughDrum
+)

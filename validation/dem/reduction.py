@@ -3,16 +3,19 @@
 import csv
 import io
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from grainlaw.materials import InputError
 from grainlaw.materials.atomic import write_text
+from grainlaw.validation.dem.drum import MEAN, MEAN_TABLE
 from grainlaw.validation.dem.runs import RECORD
 from grainlaw.validation.grains.observation import Observation, write_observation
 from grainlaw.validation.grains.observe import observe_folder
 
+Rows = Callable[[Path, dict[str, Any]], list[dict[str, Any]]]
 COLLAPSES, PROVENANCE = "collapse", "provenance.json"
 # The kinds of cases whose runs become observations.
 RELEASES = ("collapse", "cylinder")
@@ -40,12 +43,13 @@ def reduce_runs(folder: Path, into: Path) -> list[Path]:
             observation = observe_folder(run)
             write_observation(path, observation if _shows_stress(record) else without_stress(observation))
             written.append(path)
-    cells = [(run, record) for run, record in runs if record["kind"] in ROWS]
+    cells = [(run, record) for run, record in runs if record["kind"] in TABLES]
     for case in dict.fromkeys(record["case"] for _, record in cells):
-        path = into / table_name(case)
-        rows = [row for run, record in cells if record["case"] == case for row in ROWS[record["kind"]](run, record)]
-        write_text(path, _table(rows))
-        written.append(path)
+        of_case = [(run, record) for run, record in cells if record["case"] == case]
+        for name, rows_of in TABLES[of_case[0][1]["kind"]].items():
+            path = into / table_name(f"{case}-{name}" if name else case)
+            write_text(path, _table([row for run, record in of_case for row in rows_of(run, record)]))
+            written.append(path)
     if cells:
         written.append(_write_provenance(into, cells))
     return written
@@ -180,18 +184,25 @@ def _triaxial_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
-def _hopper_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
-    """The mass in the silo, and what passes its opening, over time."""
+def _all_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
+    """The table of a run as it is: of a hopper its mass over time, of a drum its surface and torque."""
     return [{"code": record["code"], "seed": record["seed"], **row} for row in _read(run / record["table"])]
 
 
-ROWS = {
-    "shear": _shear_rows,
-    "wall-shear": _wall_shear_rows,
-    "shear-steps": _shear_steps_rows,
-    "compression": _compression_rows,
-    "triaxial": _triaxial_rows,
-    "slot-hopper": _hopper_rows,
+def _mean_rows(run: Path, record: dict[str, Any]) -> list[dict[str, Any]]:
+    """The mean profiles of a drum."""
+    return _all_rows(run, record | {"table": MEAN_TABLE})
+
+
+# The tables of each kind, by what is added to the name of the case.
+TABLES: dict[str, dict[str, Rows]] = {
+    "shear": {"": _shear_rows},
+    "wall-shear": {"": _wall_shear_rows},
+    "shear-steps": {"": _shear_steps_rows},
+    "compression": {"": _compression_rows},
+    "triaxial": {"": _triaxial_rows},
+    "slot-hopper": {"": _all_rows},
+    "rough-drum": {"": _all_rows, MEAN: _mean_rows},
 }
 
 

@@ -12,13 +12,14 @@ import numpy as np
 
 from grainlaw.materials.atomic import write_text
 from grainlaw.materials.errors import InputError, SimulationError
-from grainlaw.validation.dem import collapse, compression, hopper, shear, shear_steps, triaxial, wall_shear
+from grainlaw.validation.dem import collapse, compression, drum, hopper, shear, shear_steps, triaxial, wall_shear
 from grainlaw.validation.dem.description import (
     AnyCase,
     Collapse,
     Compression,
     CylinderCollapse,
     PlaneShear,
+    RoughDrum,
     ShearSteps,
     SlotHopper,
     Triaxial,
@@ -169,6 +170,7 @@ def _kind(case: AnyCase) -> Any:
         ShearSteps: shear_steps,
         Compression: compression,
         SlotHopper: hopper,
+        RoughDrum: drum,
         Triaxial: triaxial,
     }
     return modules[type(case)]
