@@ -183,7 +183,7 @@ def measure(effort: Effort) -> Evidence:
 
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
-    """The law with too little friction, in the small drum: its angle, and its torque against the weight of the grains."""
+    """The law with too little friction, in the small drum: its angle, its torque against the weight of grains."""
     reference, case = read_reference_set(), drum(RADII[0])
     (law,) = laws_fitted(reference, JUDGED[:1])
     less = {name: LESS_FRICTION * law.parameters[name] for name in FRICTIONS}
