@@ -1,5 +1,6 @@
 """Where the energy of a run is, and where it went; and what mass left with it."""
 
+import math
 from dataclasses import dataclass
 
 from grainlaw.mpm_core.carried import Carried
@@ -12,6 +13,10 @@ class Ledger:
     Velocities belong to the middles of steps, and so do kinetic energy, potential energy and internal work: half of the
     last step's rise and work is still to come. A balance of energies at different times would be wrong by the work of
     half a step.
+
+    The work of the stress is counted at two places. `internal_work` is that on the strains of points, which is what a
+    law stores or dissipates; `work_on_nodes` that of internal forces and gravity on the velocities of the nodes, which
+    is what moves, in the middle of the last step. They differ where transfers smooth strains.
 
     `volume_projection` is the part of the potential energy that points gained by being moved apart. `wall_friction` is
     the part of `wall_work` that sliding dissipates, `obstacle_friction` that of `obstacle_work`. The initial elastic
@@ -41,6 +46,7 @@ class Ledger:
     inflow_elastic: float = 0.0
     mass_in: float = 0.0
     volume_projection: float = 0.0
+    work_on_nodes: float = 0.0
     rise_to_come: float = 0.0
     work_to_come: float = 0.0
 
@@ -79,10 +85,27 @@ class Ledger:
 
     @property
     def numerical_dissipation(self) -> float:
-        """What is left of the balance: energy that transfers and time integration took (or gave, if negative)."""
+        """What is left of the balance: energy that transfers and time integration took (or gave, if negative).
+
+        By the work at the points. Where a stress that follows strain rates dissipates more there than on the nodes, it
+        is negative without any motion from nowhere: `made` tells.
+        """
         given = self.initial_kinetic + self.volume_projection + self.inflow
         taken = self.internal_work + self.wall_work + self.obstacle_work + self.outflow
         return given - self.kinetic - self.potential - taken
+
+    @property
+    def internal_work_on_nodes(self) -> float:
+        """What internal forces took of the energy of motion of the nodes, up to the middle of the last step."""
+        risen = self.potential - self.volume_projection + self.outflow_height - self.inflow_height
+        return -self.work_on_nodes - risen
+
+    @property
+    def transfer_dissipation(self) -> float:
+        """What transfers between points and nodes took of the energy of motion (gave, if negative)."""
+        given = self.initial_kinetic + self.inflow - self.inflow_height + self.work_on_nodes
+        taken = self.wall_work + self.obstacle_work + self.outflow - self.outflow_height
+        return given - self.kinetic - taken
 
     @property
     def released(self) -> float:
@@ -97,8 +120,20 @@ class Ledger:
 
     def inelastic_work(self, elastic: float) -> float:
         """What of the internal work is not in the elastic energy at the end of the step: plastic and viscous work."""
-        return (
-            self.internal_work
-            + self.work_to_come
-            - (elastic + self.outflow_elastic - self.initial_elastic - self.inflow_elastic)
-        )
+        return self._not_stored(self.internal_work, elastic)
+
+    def made(self, elastic: float) -> float:
+        """Energy from nowhere, with the elastic energy at the end of the step; zero where none was made.
+
+        In two parts, of which neither may make up for the other: what transfers gave to the motion, and what the stress
+        gave to the nodes beyond what had been stored. Where a law does not state its elastic energy (NaN), what is
+        missing in the balance by the work at the points.
+        """
+        if math.isnan(elastic):
+            return max(0.0, -self.numerical_dissipation)
+        by_stress = -self._not_stored(self.internal_work_on_nodes, elastic)
+        return max(0.0, -self.transfer_dissipation) + max(0.0, by_stress)
+
+    def _not_stored(self, internal_work: float, elastic: float) -> float:
+        stored = elastic + self.outflow_elastic - self.initial_elastic - self.inflow_elastic
+        return internal_work + self.work_to_come - stored

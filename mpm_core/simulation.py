@@ -163,25 +163,27 @@ class Simulation:
     def _update_grid(self, dt: float, couples_volumes: bool) -> None:
         """Solve the momentum equation on the nodes, then walls, held nodes and sleepers have their say."""
         kick = 0.5 * (self.last_step + dt)
-        update_nodes(self.grid, self.active, self.scene.gravity, kick, couples_volumes)
+        self.ledger.work_on_nodes += update_nodes(self.grid, self.active, self.scene.gravity, kick, couples_volumes)
         clearances = self.wall_clearance.clearances()
         self._hold_at_walls(dt, clearances)
         if self.obstacles.present:
             self._touch_obstacles(dt, clearances)
-        hold_nodes(self.grid, self.held_nodes)
+        self.ledger.work_on_nodes += hold_nodes(self.grid, self.held_nodes)
         if self.sleep is not None:
-            self.sleep.hold(self.active)
+            self.ledger.work_on_nodes += self.sleep.hold(self.active)
 
     def _hold_at_walls(self, dt: float, clearances: NDArray[np.float64]) -> None:
         taken = hold_at_walls(self.grid, self.wall_clearance.layers, clearances, dt)
         self.ledger.wall_work += taken.work
         self.ledger.wall_friction += taken.friction
+        self.ledger.work_on_nodes += taken.of_forces
 
     def _touch_obstacles(self, dt: float, clearances: NDArray[np.float64]) -> None:
         taken = self.obstacles.apply(self.time, dt, lambda: self._hold_at_walls(dt, clearances))
         if taken is not None:
             self.ledger.obstacle_work += taken.work
             self.ledger.obstacle_friction += taken.friction
+            self.ledger.work_on_nodes += taken.of_forces
 
     def _g2p(self, dt: float, couples_volumes: bool) -> None:
         for body in self.bodies:

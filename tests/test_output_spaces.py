@@ -66,7 +66,7 @@ def test_energies_have_the_unit_of_the_space_in_table_and_run(tmp_path, name, un
     with (tmp_path / "quantities.csv").open(newline="") as table:
         rows = {row["name"]: row for row in csv.DictReader(table)}
     energies = [one for one, row in rows.items() if row["unit"].startswith("J")]
-    assert len(energies) == 13
+    assert len(energies) == 14
     assert {rows[one]["unit"] for one in energies} == {unit}
     per = {"J/m": "kinetic energy per width in", "J/rad": "kinetic energy per radian in", "J": "kinetic energy in"}
     assert rows["kinetic_energy"]["doc"].startswith(per[unit])

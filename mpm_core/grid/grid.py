@@ -48,6 +48,18 @@ GHOSTS = 2
 NO_GHOSTS = (-1, 2**31 - 1)
 
 
+class CountedNodes(NamedTuple):
+    """The nodes that sums over the grid count: of the copies of a node across a periodic axis one.
+
+    columns                whether any of a column is counted
+    first_row, row_behind  between which rows nodes are counted, along the last axis
+    """
+
+    columns: NDArray[np.bool_]
+    first_row: int
+    row_behind: int
+
+
 class Grid:
     """A box of `cells` square or cubic cells of `cell_size` [m] whose lower corner is `lower` [m].
 
@@ -76,6 +88,7 @@ class Grid:
         self.strides = tuple(math.prod(self.shape[axis + 1 :]) for axis in range(space.axes))
         self.precision = precision
         self.open_sides = tuple(open_sides) or ((False, False),) * space.axes
+        self.counted = self._counted(periodic_axes)
         self.limits = tuple(self._limits(axis, periodic_axes) for axis in range(space.axes))
         self.components = NODE_OF[space.axes]
         self.nodes = self.empty_nodes()
@@ -93,6 +106,15 @@ class Grid:
         """Another set of numbers like `bulk`, all zero; none where nodes hold them."""
         nodes = math.prod(self.shape) if self.space.axes == 3 else 0
         return _aligned_zeros(nodes * BULK_COMPONENTS, PRECISIONS[self.precision])
+
+    def _counted(self, periodic_axes: Sequence[int]) -> CountedNodes:
+        between = [
+            (GHOSTS, GHOSTS + count) if axis in periodic_axes else (0, nodes)
+            for axis, (count, nodes) in enumerate(zip(self.cells, self.shape, strict=True))
+        ]
+        columns = np.zeros(self.shape[:-1], np.bool_)
+        columns[tuple(slice(*limits) for limits in between[:-1])] = True
+        return CountedNodes(columns.ravel(), *between[-1])
 
     def _limits(self, axis: int, periodic_axes: Sequence[int]) -> tuple[float, float]:
         """Between which coordinates along an axis points have to be [m]; infinite where they may leave."""

@@ -22,8 +22,16 @@ def nodes_where(grid: Grid, condition: Callable[..., NDArray[np.bool_]]) -> NDAr
     return np.flatnonzero(condition(*np.meshgrid(*along, indexing="ij", sparse=True)))
 
 
-def hold_nodes(grid: Grid, nodes: NDArray[np.int64]) -> None:
-    """Set the new velocity of these nodes to zero."""
-    if len(nodes) > 0:
-        first = grid.components.momentum
-        grid.nodes.reshape(-1, COMPONENTS)[nodes, first : first + grid.space.axes] = 0.0
+def hold_nodes(grid: Grid, nodes: NDArray[np.int64]) -> float:
+    """Set the new velocity of these nodes to zero.
+
+    Returns by how much the work of the forces on the nodes changes thereby [J and the space's amount] (`walls`).
+    """
+    if len(nodes) == 0:
+        return 0.0
+    of_node, axes, each = grid.components, grid.space.axes, grid.nodes.reshape(-1, COMPONENTS)
+    new, old = (each[nodes, first : first + axes].astype(float) for first in (of_node.momentum, of_node.force))
+    column, row = np.divmod(nodes, grid.shape[-1])
+    is_counted = grid.counted.columns[column] & (grid.counted.first_row <= row) & (row < grid.counted.row_behind)
+    each[nodes, of_node.momentum : of_node.momentum + axes] = 0.0
+    return -0.5 * float((is_counted * each[nodes, of_node.mass] * (new * (new - old)).sum(axis=1)).sum())

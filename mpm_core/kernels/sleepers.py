@@ -30,17 +30,27 @@ def copy_nodes(source, target, components, column, active):  # type: ignore[no-u
 
 @njit(parallel=True, cache=True)
 @named(CORE_MARK)
-def hold_sleepers(nodes, of_node, held, withheld, column, active):  # type: ignore[no-untyped-def]
-    """Hold the nodes with sleeping mass, and sum up the momentum that is withheld from them, shape (nodes, axes)."""
+def hold_sleepers(nodes, of_node, held, withheld, column, active, counted):  # type: ignore[no-untyped-def]
+    """Hold the nodes with sleeping mass, and sum up the momentum that is withheld from them, shape (nodes, axes).
+
+    Returns by how much the work of the forces on the nodes of each column changes thereby (`walls`).
+    """
+    works = np.zeros(active.last_column - active.first_column + 1)
     for i in prange(active.first_column, active.last_column + 1):
+        twice_work = 0.0
         for j in range(active.first_rows[i], active.last_rows[i] + 1):
             number = i * column + j
             if held[number]:
                 node = number * COMPONENTS
                 for axis in range(withheld.shape[1]):
                     velocity = node + of_node.momentum + axis
-                    withheld[number, axis] += nodes[node + of_node.mass] * nodes[velocity]
+                    momentum = nodes[node + of_node.mass] * nodes[velocity]
+                    withheld[number, axis] += momentum
+                    if counted.first_row <= j < counted.row_behind:
+                        twice_work -= momentum * (nodes[velocity] - nodes[node + of_node.force + axis])
                     nodes[velocity] = 0.0
+        works[i - active.first_column] = 0.5 * twice_work if counted.columns[i] else 0.0
+    return works
 
 
 @njit(cache=True)

@@ -45,13 +45,16 @@ class Wall:
 
 
 class TakenByWalls(NamedTuple):
-    """Energies of one step [J]: what the walls take in all, and what of it sliding friction dissipates.
+    """Energies of one step [J and the space's amount].
 
-    The rest is what walls stop and, where they slide themselves, the work that they do (negative).
+    work       what the walls take in all: what they stop and, where they slide themselves, what they do (negative)
+    friction   what of it sliding friction dissipates
+    of_forces  by how much the work of the forces on the nodes changes, as walls change the mean velocity of the step
     """
 
     work: float
     friction: float
+    of_forces: float
 
 
 # A wall to compiled code: what it does, where it lies [m] and how fast it slides; which nodes of its layer are active,
@@ -122,7 +125,9 @@ def hold_at_walls(grid: Grid, layers: NDArray[np.void], clearances: NDArray[np.f
     A node of a friction wall comes no closer in a step of dt [s] than its clearance [m] (`wall_clearance`).
 
     Energy is counted as impulse times the mean of old and new velocity, which is zero for what stays at rest; friction
-    as the tangential impulse of a friction wall times the mean sliding velocity.
+    as the tangential impulse of a friction wall times the mean sliding velocity. What acted on a node before has given
+    it its velocity without the wall less the old one, an impulse whose
+    work changes by half of the change of the new velocity.
     """
     return TakenByWalls(*_make_hold(grid.space.axes)(grid.nodes, layers, clearances, dt))
 
@@ -135,7 +140,7 @@ def _make_hold(axes: int) -> Callable[..., Any]:
     @njit(error_model="numpy", cache=True)
     @named(f"{axes}_{CORE_MARK}")
     def hold(nodes, layers, clearances, dt):  # type: ignore[no-untyped-def]
-        taken, dissipated, free = 0.0, 0.0, np.empty(axes)
+        taken, dissipated, of_forces, free = 0.0, 0.0, 0.0, np.empty(axes)
         for number in range(len(layers)):
             layer = layers[number]
             for k in range(layer.first[0], layer.first[0] + layer.count[0]):
@@ -151,12 +156,13 @@ def _make_hold(axes: int) -> Callable[..., Any]:
                     if not (is_counted and layer.counted_from[1] <= m < layer.counted_before[1]):
                         continue
                     for axis in range(axes):
-                        new = nodes[node + of_new + axis]
-                        impulse = 0.5 * mass * (free[axis] - new)
-                        taken += impulse * (nodes[node + of_old + axis] + new)
+                        old, new = nodes[node + of_old + axis], nodes[node + of_new + axis]
+                        half_impulse = 0.5 * mass * (free[axis] - new)
+                        taken += half_impulse * (old + new)
+                        of_forces -= half_impulse * (free[axis] - old)
                         if layer.kind == WallKind.FRICTION and axis != layer.axis:
-                            dissipated += impulse * (nodes[node + of_old + axis] + new - 2.0 * layer.velocity[axis])
-        return taken, dissipated
+                            dissipated += half_impulse * (old + new - 2.0 * layer.velocity[axis])
+        return taken, dissipated, of_forces
 
     return hold
 

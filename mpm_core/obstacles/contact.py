@@ -53,6 +53,7 @@ class Contacts(NamedTuple):
     lever        from the obstacle's position to x_c, shape (contacts, axes) [m]
     gap          g [m]
     approach     R, shape (contacts, axes) [m/s]
+    unhindered   R without contact, shape (contacts, axes) [m/s]
     impulse      J, shape (contacts, axes)
     is_active    whether a contact is active in an iteration
     """
@@ -64,6 +65,7 @@ class Contacts(NamedTuple):
     lever: NDArray[np.float64]
     gap: NDArray[np.float64]
     approach: NDArray[np.float64]
+    unhindered: NDArray[np.float64]
     impulse: NDArray[np.float64]
     is_active: NDArray[np.bool_]
 
@@ -77,21 +79,25 @@ def _no_contacts(most: int, axes: int, nodes: int) -> Contacts:
         lever=np.zeros((most, axes)),
         gap=np.zeros(most),
         approach=np.zeros((most, axes)),
+        unhindered=np.zeros((most, axes)),
         impulse=np.zeros((most, axes)),
         is_active=np.zeros(most, np.bool_),
     )
 
 
 class TakenByObstacles(NamedTuple):
-    """What the obstacles take in one step.
+    """What the obstacles take in one step; amounts as the space has them.
 
-    work      energy in all [J]
-    friction  what of it sliding dissipates [J]
-    impulses  of each obstacle: impulse [N s], and its moment about the position of its frame [N m s], shape (n, 6)
+    work       energy in all [J]
+    friction   what of it sliding dissipates [J]
+    of_forces  by how much the work of the forces on the nodes changes, as contact changes the mean velocity of the
+               step (`kernels.walls`) [J]
+    impulses   of each obstacle: impulse [N s], and its moment about the position of its frame [N m s], shape (n, 6)
     """
 
     work: float
     friction: float
+    of_forces: float
     impulses: NDArray[np.float64]
 
 
@@ -129,11 +135,11 @@ class ObstacleContact:
                 place = grid.strides, grid.ghosts, grid.origin, grid.cell_size
                 count = find(body.storage, pairs, rows, numbers, *_size(body), *place, self._contacts, count)
         if count == 0:
-            return TakenByObstacles(0.0, 0.0, impulses)
+            return TakenByObstacles(0.0, 0.0, 0.0, impulses)
         solve = make_solve(grid.space.axes, self.basis)
         taken = solve(grid.nodes, grid.strides, self._contacts, count, rows, dt, self._shares, impulses)
-        work, friction = taken
-        return TakenByObstacles(work, friction, impulses)
+        work, friction, of_forces = taken
+        return TakenByObstacles(work, friction, of_forces, impulses)
 
 
 def _size(body: Body) -> tuple[float, float]:

@@ -32,7 +32,7 @@ class _Access(NamedTuple):
 
 @cache
 def make_solve(axes: int, basis: Basis) -> Callable[..., Any]:
-    """A kernel that finds the impulses and applies them to the nodes; returns work taken, and what of it is friction.
+    """A kernel that finds the impulses and applies them to the nodes; returns the energies of `TakenByObstacles`.
 
     `shares` is zero for each node of the grid before and after. `impulses` receives what acts on each obstacle: the
     impulse and its moment about the obstacle's position.
@@ -45,10 +45,12 @@ def make_solve(axes: int, basis: Basis) -> Callable[..., Any]:
     @named(f"{axes}_{basis.name}_{CORE_MARK}")
     def solve(nodes, strides, contacts, count, obstacles, dt, shares, impulses):  # type: ignore[no-untyped-def]
         change = np.empty(axes)
-        for _ in range(ITERATIONS):
+        for iteration in range(ITERATIONS):
             find_approaches(nodes, strides, contacts, count, obstacles, dt)
+            if iteration == 0:
+                contacts.unhindered[:count] = contacts.approach[:count]
             iterate(nodes, strides, contacts, count, obstacles, shares, change)
-        return count_taken(nodes, strides, contacts, count, obstacles, impulses)
+        return count_taken(nodes, strides, contacts, count, obstacles, dt, impulses)
 
     return solve
 
@@ -226,19 +228,22 @@ def _make_count_taken(axes: int, basis: Basis, access: _Access) -> Callable[...,
 
     @register_jitable
     @named(mark)
-    def count_taken(nodes, strides, contacts, count, obstacles, impulses):  # type: ignore[no-untyped-def]
-        work, friction = 0.0, 0.0
+    def count_taken(nodes, strides, contacts, count, obstacles, dt, impulses):  # type: ignore[no-untyped-def]
+        work, friction, of_forces = 0.0, 0.0, 0.0
         for c in range(count):
             obstacle, normal = obstacles[contacts.obstacle[c]], 0.0
             for axis in range(axes):
                 normal += contacts.impulse[c, axis] * contacts.normal[c, axis]
             for axis in range(axes):
-                velocity = 0.5 * velocity_at(nodes, of_new, contacts, c, strides, axis)
-                velocity += 0.5 * velocity_at(nodes, of_old, contacts, c, strides, axis)
+                new = velocity_at(nodes, of_new, contacts, c, strides, axis)
+                old = velocity_at(nodes, of_old, contacts, c, strides, axis)
+                velocity, of_surface = 0.5 * new + 0.5 * old, surface_velocity(obstacle, contacts.lever[c], axis)
+                free = contacts.unhindered[c, axis] + of_surface - contacts.normal[c, axis] * contacts.gap[c] / dt
                 tangential = contacts.impulse[c, axis] - normal * contacts.normal[c, axis]
                 work -= contacts.impulse[c, axis] * velocity
-                friction -= tangential * (velocity - surface_velocity(obstacle, contacts.lever[c], axis))
+                friction -= tangential * (velocity - of_surface)
+                of_forces += 0.5 * contacts.impulse[c, axis] * (free - old)
             add_impulse(contacts.impulse[c], contacts.lever[c], impulses[contacts.obstacle[c]])
-        return work, friction
+        return work, friction, of_forces
 
     return count_taken

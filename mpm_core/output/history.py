@@ -72,6 +72,11 @@ _COLUMNS = (
     HistoryColumn("kinetic_energy", "J", "kinetic energy{per} in the middle of the last step, where velocities belong"),
     HistoryColumn("potential_energy", "J", "potential energy of gravity{per} relative to the start"),
     HistoryColumn("internal_work", "J", "work of the stress{per} since the start, elastic or not"),
+    HistoryColumn(
+        "internal_work_on_nodes",
+        "J",
+        "energy of motion{per} that internal forces took from the nodes since the start; compare `internal_work`",
+    ),
     HistoryColumn("elastic_energy", "J", "elastic energy{per}; nan where a law does not state it (`stored_energy`)"),
     HistoryColumn("inelastic_work", "J", "plastic and viscous work{per} since the start: internal work not stored"),
     HistoryColumn("wall_work", "J", "work done on the walls{per} since the start: friction and what they stop"),

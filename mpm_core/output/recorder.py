@@ -101,6 +101,7 @@ class Recorder:
                 "kinetic_energy": ledger.kinetic,
                 "potential_energy": ledger.potential,
                 "internal_work": ledger.internal_work,
+                "internal_work_on_nodes": ledger.internal_work_on_nodes,
                 "elastic_energy": elastic,
                 "inelastic_work": ledger.inelastic_work(elastic),
                 "wall_work": ledger.wall_work,

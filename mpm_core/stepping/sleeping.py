@@ -29,7 +29,7 @@ from grainlaw.mpm_core.body import Body
 from grainlaw.mpm_core.grid.active_nodes import ActiveNodes, find_active_nodes, no_active_nodes
 from grainlaw.mpm_core.grid.grid import BULK_COMPONENTS, COMPONENTS, Grid
 from grainlaw.mpm_core.grid.periodic import join_marks
-from grainlaw.mpm_core.kernels.grid_update import clear_bulk, clear_nodes
+from grainlaw.mpm_core.kernels.grid_update import clear_bulk, clear_nodes, sum_of_columns
 from grainlaw.mpm_core.kernels.shape_functions import Basis
 from grainlaw.mpm_core.kernels.simd.registers import MOST_AT_ONCE
 from grainlaw.mpm_core.kernels.sleepers import (
@@ -115,11 +115,16 @@ class Sleep:
         if couples_volumes and len(self.bulk) > 0:
             copy_nodes(self.bulk, self.grid.bulk, BULK_COMPONENTS, column, active.columns)
 
-    def hold(self, active: ActiveNodes) -> None:
-        """Hold the nodes with sleeping mass, if there are any."""
-        if self.has_sleepers:
-            held, grid = self.held.reshape(-1), self.grid
-            hold_sleepers(grid.nodes, grid.components, held, self.withheld, grid.shape[-1], active.columns)
+    def hold(self, active: ActiveNodes) -> float:
+        """Hold the nodes with sleeping mass, if there are any.
+
+        Returns by how much the work of the forces on the nodes changes thereby [J and the space's amount].
+        """
+        if not self.has_sleepers:
+            return 0.0
+        held, grid = self.held.reshape(-1), self.grid
+        on_nodes = grid.nodes, grid.components, held, self.withheld, grid.shape[-1]
+        return sum_of_columns(hold_sleepers(*on_nodes, active.columns, grid.counted))
 
     def wake_up(self, active: ActiveNodes) -> bool:
         """Wake what is near an active node from which too much is withheld; returns whether anything woke."""

@@ -71,10 +71,10 @@ def trial(simulation: Simulation, end: float, lead: Lead = in_stable_steps) -> T
 
 
 def created_energy(simulation: Simulation) -> float:
-    """Negative numerical dissipation over the energy released so far; zero where energy was lost."""
+    """Energy made over the energy released so far (`Ledger.made`); zero where none was."""
     ledger = simulation.ledger
     released = ledger.initial_kinetic + max(0.0, -ledger.potential)
-    return max(0.0, -ledger.numerical_dissipation) / released if released > 0.0 else 0.0
+    return ledger.made(simulation.elastic_energy()) / released if released > 0.0 else 0.0
 
 
 def survival(label: str, found: Trial) -> tuple[Measurement, ...]:
