@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from matplotlib.image import imread
 
 from grainlaw.materials import SimulationError
 from grainlaw.validation.cases.obstacles.drum_grains import scene, turning_grains
@@ -17,6 +18,7 @@ from grainlaw.validation.dem.runs import RECORD
 from grainlaw.validation.grains.drum import Drum, mean_flow
 from grainlaw.validation.grains.snapshot import GrainSnapshot
 from grainlaw.validation.reference.reference_set import ReferenceSet
+from grainlaw.validation.report.drum_picture import FASTEST, Panel, draw
 from grainlaw.validation.scenes import simulation_of
 
 RADIUS, SPACING, FRACTION = 0.3, 0.01, 0.6
@@ -145,7 +147,22 @@ def test_only_steady_windows_are_read():
         {"seed": 1.0, "t": at, "angle": angle, "torque": 9.81 * 0.05 * 200.0, "center_x": 0.05, "mass": 200.0}
         for at, angle in ((1.0, 50.0), (CASE.steady_from + 0.5, 36.0), (CASE.steady_from + 1.0, 38.0))
     ]
-    mean = [{"seed": 1.0, "place": 0.0, "surface": 0.0}]
+    mean = [{"seed": 1.0, "place": 0.0, "surface": 0.1, "speed": 0.2, "solid_fraction": 0.5}]
     ((packing, mass),) = turning_grains(ReferenceSet({}, {"drum_r0.3": windows, "drum_r0.3_mean": mean}), CASE)
     assert (packing.angle, mass) == (37.0, 200.0)
     assert packing.torque.error == pytest.approx(0.0)
+    assert (packing.surface, packing.across) == (([0.0], [0.1]), ([0.0], [0.2]))
+
+
+def test_picture_shows_the_nearer_grain_in_the_colour_of_its_speed(tmp_path):
+    """A fast grain in front of a slow one of the same size hides it."""
+    places = np.array([[0.0, 0.01, 0.0], [0.0, 0.05, 0.0]])
+    speeds = np.array([[0.0, 0.0, FASTEST], [0.0, 0.0, 0.0]])
+    pair = GrainSnapshot(0.0, places, speeds, np.ones(2))
+    draw(CASE, [Panel("two", pair, np.full(2, RADIUS))], tmp_path / "drum.png")
+    image = imread(tmp_path / "drum.png")[..., :3]
+    fast, slow = (
+        (np.abs(image - np.array(of) / 255.0) < 0.02).all(axis=2).sum() for of in ((253, 231, 37), (68, 1, 84))
+    )
+    assert fast > 5000
+    assert slow < 0.02 * fast

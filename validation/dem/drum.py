@@ -107,6 +107,11 @@ def reduce(case: RoughDrum, folder: Path) -> Reduced:
     return Reduced(steps, snapshots[-1].count, TABLE)
 
 
+def last_snapshot(case: RoughDrum, folder: Path) -> GrainSnapshot:
+    """The grains at the end of a run."""
+    return _snapshot(folder, _outputs(case) * _output_steps(case), case.time_step)
+
+
 def _profiles(flow: Flow) -> list[list[str]]:
     """The surface over x, and speed and solid fraction along the normal of the surface, at the same places."""
     places = np.linspace(-flow.drum.radius, flow.drum.radius, PLACES)

@@ -14,23 +14,24 @@ from grainlaw.validation.case import Case, Effort, Evidence, Figure, Measurement
 from grainlaw.validation.cases.obstacles.hopper_grains import FRICTIONS, JUDGED, TOLD, laws_fitted
 from grainlaw.validation.dem.catalogue import drum
 from grainlaw.validation.dem.description import RoughDrum
-from grainlaw.validation.dem.drum import MEAN, WINDOW
+from grainlaw.validation.dem.drum import MEAN, MEAN_COLUMNS, PLACES, WINDOW
 from grainlaw.validation.dem.judging.column import ROUGH_FRICTION
 from grainlaw.validation.dem.judging.data_table import by_seed
 from grainlaw.validation.dem.judging.fitted_laws import FittedLaw
 from grainlaw.validation.dem.reduction import table_name
-from grainlaw.validation.grains.drum import Drum, Flow, mean_flow, mean_of_flows
+from grainlaw.validation.grains.drum import LEVEL, Drum, Flow, mean_flow, mean_of_flows
 from grainlaw.validation.grains.material_points import DEPTH, snapshot_of_bodies
-from grainlaw.validation.grains.snapshot import GrainSnapshot
+from grainlaw.validation.grains.snapshot import Array, GrainSnapshot
 from grainlaw.validation.reference.reference_set import ReferenceSet, read_reference_set
 from grainlaw.validation.scenes import advance, simulation_of
 
 Floats = NDArray[np.float64]
 
 ANGLE_BAND, TORQUE_BAND = 2.0, 0.02  # degrees; share of weight times arm
-RADII = (0.3,)
+RADII = (0.3, 0.45)
 CELLS = {Effort.QUICK: (12,), Effort.FULL: (12, 24)}  # in a radius; the finest is judged
 ARC = 96  # sides of the half disc that the law fills at the start
+SHOWN = 0.7  # of the radius, in pictures of the surface
 LESS_FRICTION = 0.7
 
 
@@ -41,14 +42,15 @@ class Turning:
     angles    of the surface [degrees]
     torques   that turn the drum, per width [N m/m]
     weights   moments of the weight about the axis, per width [N m/m]
-    x, z      the mean surface [m]
+    surface   its mean: x, z [m]
+    across    place along the normal of the surface from the axis [m], and velocity down the slope [m/s]
     """
 
     angles: Floats
     torques: Floats
     weights: Floats
-    x: Floats
-    z: Floats
+    surface: tuple[Array, Array]
+    across: tuple[Array, Array]
 
     @property
     def angle(self) -> float:
@@ -77,8 +79,15 @@ def turning_grains(reference: ReferenceSet, case: RoughDrum) -> list[tuple[Turni
         angles, torques, arms, masses = (
             np.array([row[of] for row in steady]) for of in ("angle", "torque", "center_x", "mass")
         )
-        x, z = (np.array([row[of] for row in mean]) for of in ("place", "surface"))
-        found.append((Turning(angles, torques, masses * case.gravity * arms, x, z), float(masses.mean())))
+        places, surface, speeds, fractions = (np.array([row[of] for row in mean]) for of in MEAN_COLUMNS)
+        run = Turning(
+            angles,
+            torques,
+            masses * case.gravity * arms,
+            _middle(places, surface, case.radius),
+            _filled(places, speeds, fractions),
+        )
+        found.append((run, float(masses.mean())))
     return found
 
 
@@ -123,13 +132,27 @@ def turning_law(case: RoughDrum, law: FittedLaw, mass: float, cells: int) -> tup
     windows = [_window(simulation, case) for _ in range(round((case.end - case.steady_from) / WINDOW))]
     flows = [flow for flow, _ in windows]
     mean = mean_of_flows(flows)
+    places = np.linspace(-case.radius, case.radius, PLACES)
+    fractions, speeds = mean.across(places)
     return Turning(
         angles=np.array([flow.angle for flow in flows]),
         torques=np.array([torque for _, torque in windows]),
         weights=np.array([mass * case.gravity * flow.center[0] for flow in flows]),
-        x=np.asarray(mean.drum.lattice.x, np.float64),
-        z=np.asarray(mean.surface, np.float64),
+        surface=_middle(mean.drum.lattice.x, mean.surface, case.radius),
+        across=_filled(places, speeds, fractions),
     ), mean
+
+
+def _middle(x: Array, z: Array, radius: float) -> tuple[Array, Array]:
+    """The surface away from the wall of the drum."""
+    inner = np.abs(x) < SHOWN * radius
+    return x[inner], z[inner]
+
+
+def _filled(places: Array, speeds: Array, fractions: Array) -> tuple[Array, Array]:
+    """The velocity where there is material."""
+    inside = fractions > LEVEL
+    return places[inside], speeds[inside]
 
 
 def _window(simulation: Simulation, case: RoughDrum) -> tuple[Flow, float]:
@@ -160,26 +183,40 @@ def measure(effort: Effort) -> Evidence:
     """mu(I), phi(I) in the small drum on coarse cells; in full three laws in two drums, on two sizes of cells."""
     is_quick, reference = effort is Effort.QUICK, read_reference_set()
     laws = laws_fitted(reference, JUDGED[:1] if is_quick else JUDGED + TOLD)
-    found, curves, notes = [], [], []
+    found, notes, shown = [], [], []
     for radius in RADII[:1] if is_quick else RADII:
         case, where = drum(radius), f"R = {radius:g} m"
         packings, masses = zip(*turning_grains(reference, case), strict=True)
         angle = mean_angle(packings)
         for grains in packings:
             notes.append(f"grains, {where}: {grains.told}")
-            curves.append(curve(f"grains, {where}", grains.x, grains.z, "reference"))
+            shown.append((f"grains, {where}", grains, "reference"))
             found.append(replace(grains.torque, name=f"grains, {where}: {grains.torque.name}"))
         for law in laws:
             for cells in CELLS[effort]:
                 run, flow = turning_law(case, law, float(np.mean(masses)), cells)
-                label = f"{law.judged.title}, {where}, {cells} cells in it"
+                label = f"{law.judged.title}, {where}"
                 thickness, speed = flow.layer
-                notes.append(f"{label}: {run.told}; {thickness:.3f} m run down, at {speed:.2f} m/s")
-                curves.append(curve(label, run.x, run.z))
-                if law.judged.law in JUDGED and cells == CELLS[effort][-1]:
-                    found += [angle_error(label, run.angle, angle), replace(run.torque, name=f"{label}: torque")]
-    figure = Figure("Mean surface", "x [m]", "z [m]", tuple(curves))
-    return Evidence(tuple(found), figures=(figure,), notes=tuple(notes))
+                notes.append(f"{label}, {cells} cells: {run.told}; {thickness:.3f} m runs down, at {speed:.2f} m/s")
+                if cells == CELLS[effort][-1]:
+                    shown.append((label, run, "measured"))
+                    found += judged(label, run, angle) if law.judged.law in JUDGED else []
+    return Evidence(tuple(found), figures=pictures(shown), notes=tuple(notes))
+
+
+def judged(label: str, run: Turning, angle: float) -> list[Measurement]:
+    """A law's angle against that of the grains [degrees], and its torque."""
+    return [angle_error(label, run.angle, angle), replace(run.torque, name=f"{label}: {run.torque.name}")]
+
+
+def pictures(shown: Sequence[tuple[str, Turning, str]]) -> tuple[Figure, ...]:
+    """The mean surfaces, and the velocities below them; each with its label and its role."""
+    surfaces = tuple(curve(label, *run.surface, role) for label, run, role in shown)
+    speeds = tuple(curve(label, *run.across, role) for label, run, role in shown)
+    return (
+        Figure("Mean surface", "x [m]", "z [m]", surfaces),
+        Figure("Velocity down the slope", "place along the normal from the axis [m]", "velocity [m/s]", speeds),
+    )
 
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
