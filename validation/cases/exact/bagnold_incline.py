@@ -16,6 +16,8 @@ DIAMETER, HEIGHT, SOLID_FRACTION = 0.0005, 0.02, 0.6
 CONSTANT = "material.mu_i_lc.inertial_number_constant"
 # The slowest mode of the layer decays within 1.2 s.
 END, KEPT = 8.0, 2.0
+# How often the flow is looked at, and how many of the last looks are averaged: single ones scatter by 1.4 %.
+LOOKS, STEADY_LOOKS = 40, 10
 QUICK_CELL = {"grid.cell_size": 0.002}
 
 
@@ -32,34 +34,35 @@ def exact_velocity(z: Any) -> Any:
 
 
 def flow(changes: dict[str, Any], end: float, steady_start: bool = False) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Heights [m] and velocities [m/s] of the points at the end, and rows of time, surface velocity, thickness.
+    """Heights [m] and velocities [m/s] of the points at the end, and a row for each look.
 
-    From rest or, for a steady start, from Bagnold's profile.
+    Rows hold time, surface velocity, thickness, and the largest error of the profile over the surface velocity. From
+    rest or, for a steady start, from Bagnold's profile.
     """
     simulation = shipped_simulation("incline", changes)
     body = simulation.bodies[0]
     if steady_start:
         body.velocity[0] = exact_velocity(body.positions[1])
-    history = [(0.0, float(body.velocity[0].max()), HEIGHT)]
+    history = [(0.0, float(body.velocity[0].max()), HEIGHT, 0.0 if steady_start else 1.0)]
     half_spacing = 0.25 * simulation.grid.cell_size
 
     def observe(present: Simulation) -> None:
         y, v = body.positions[1], body.velocity[0]
         top = y > y.max() - half_spacing
-        history.append((present.time, float(v[top].mean()), float(y.max()) + half_spacing))
+        error = float(np.abs(v - exact_velocity(y)).max()) / float(exact_velocity(HEIGHT))
+        history.append((present.time, float(v[top].mean()), float(y.max()) + half_spacing, error))
 
-    advance(simulation, end, observe, intervals=40)
+    advance(simulation, end, observe, intervals=LOOKS)
     return body.positions[1].copy(), body.velocity[0].copy(), np.array(history)
 
 
-def measurements(label: str, y: np.ndarray, v: np.ndarray, history: np.ndarray) -> tuple[Measurement, ...]:
-    """Profile and thickness at the end."""
-    surface_speed = float(exact_velocity(HEIGHT))
-    largest = float(np.abs(v - exact_velocity(y)).max()) / surface_speed
+def measurements(label: str, history: np.ndarray) -> tuple[Measurement, ...]:
+    """Surface, profile and thickness, means over the last quarter of the time."""
+    surface, thickness, largest = (float(mean) for mean in history[-STEADY_LOOKS:, 1:].mean(axis=0))
     return (
-        relative_error(f"{label}: velocity at the surface", "m/s", float(history[-1, 1]), surface_speed, BAND),
+        relative_error(f"{label}: velocity at the surface", "m/s", surface, float(exact_velocity(HEIGHT)), BAND),
         upper_bound(f"{label}: largest error of the profile", "1", largest, BAND),
-        relative_error(f"{label}: thickness of the layer", "m", float(history[-1, 2]), HEIGHT, BAND),
+        relative_error(f"{label}: thickness of the layer", "m", thickness, HEIGHT, BAND),
     )
 
 
@@ -67,9 +70,9 @@ def measure(effort: Effort) -> Evidence:
     """20 cells across the layer, 10 in quick."""
     changes = QUICK_CELL if effort is Effort.QUICK else {}
     y, v, history = flow(changes, END)
-    found = measurements(f"from rest, {END:g} s", y, v, history)
+    found = measurements(f"from rest, {END:g} s", history)
     kept_y, kept_v, kept_history = flow(changes, KEPT, steady_start=True)
-    found += measurements(f"from the profile, {KEPT:g} s", kept_y, kept_v, kept_history)
+    found += measurements(f"from the profile, {KEPT:g} s", kept_history)
     z = np.linspace(0.0, HEIGHT, 60)
     order, kept_order = np.argsort(y)[:: len(y) // 80], np.argsort(kept_y)[:: len(kept_y) // 80]
     profile = Figure(
@@ -96,7 +99,8 @@ def measure(effort: Effort) -> Evidence:
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
     """The literature's I_0 taken over without converting it to the law's own shear rate."""
-    return measurements("control", *flow(QUICK_CELL | {CONSTANT: ENGINEERING_CONSTANT}, KEPT, steady_start=True))
+    *_, history = flow(QUICK_CELL | {CONSTANT: ENGINEERING_CONSTANT}, KEPT, steady_start=True)
+    return measurements("control", history)
 
 
 CASE = Case(
@@ -105,7 +109,7 @@ CASE = Case(
     proves="steady flow of mu(I) under gravity: friction balances weight in every depth, at the right inertial number",
     reference="u(z) = 2/3 (I/d) sqrt(phi g cos theta) (H^1.5 - (H - z)^1.5), I = I_0 (tan theta - mu_0)/(mu_d - tan "
     "theta) in the engineering rate (Bagnold scaling of mu(I); GDR MiDi 2004); glass beads: 0.7793 m/s at the surface",
-    norm="largest error over the points, over the exact velocity at the surface",
+    norm="largest error over the points, over the exact velocity at the surface; means over the last quarter of time",
     mistake="I_0 of the engineering shear rate used for gamma_dot = sqrt(1/2 D_d:D_d)",
     measure=measure,
     control=control,
