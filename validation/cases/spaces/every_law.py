@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -77,39 +78,54 @@ def collapsed(subject: Subject, space: Space, lead: Lead = in_stable_steps) -> t
     return found, 1.0 - found.shape.center_of_mass_height / before
 
 
-def measured(law: str) -> tuple[list[Measurement], str]:
-    """All of one law, and its line of the table."""
+HEADINGS = (
+    "law",
+    "checks failed",
+    "element tests failed",
+    "space",
+    "box: change of height",
+    "column: fallen",
+    "energy made",
+)
+
+
+def measured(law: str) -> tuple[list[Measurement], list[tuple[str, ...]]]:
+    """All of one law, and its rows of the table, one for each space."""
     subject, checks, tests = subject_of(law), failed_checks(law), failed_element_tests(law)
     found = [
         upper_bound(f"{law}: checks that fail", "1", checks, 0.0),
         upper_bound(f"{law}: element tests that fail", "1", tests, 0.0),
     ]
-    cells = []
+    rows: list[tuple[str, ...]] = []
     for space in SPACES.values():
         change = height_change(subject, subject.parameters, space)
         collapse, fallen = collapsed(subject, space)
         found.append(upper_bound(f"{law}, {space.name}: change of height of a box", "1", change, LARGEST_CHANGE))
         found += survival(f"{law}, {space.name}", collapse)
-        cells += [f"{abs(change):.1e}", f"{fallen:.1%}", f"{collapse.created:.1e}"]
-    return found, f"| {law} | {checks} | {tests} | {' | '.join(cells)} |"
+        way = f"{fallen:.1%}" if collapse.missing == 0.0 else f"{fallen:.1%}, then stops"
+        rows.append((law, f"{checks}", f"{tests}", space.name, f"{abs(change):.1e}", way, f"{collapse.created:.1e}"))
+    return found, rows
 
 
-HEADING = "| law | checks failed | element tests failed | " + " | ".join(
-    f"{space}: box | fallen | energy made" for space in SPACES
-)
+def table(rows: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+    """The lines of a table whose columns are as wide as what stands in them."""
+    widths = [max(map(len, column)) for column in zip(HEADINGS, *rows, strict=True)]
+    padded = [[cell.ljust(width) for cell, width in zip(row, widths, strict=True)] for row in (HEADINGS, *rows)]
+    heading, *body = (f"| {' | '.join(row)} |" for row in padded)
+    return heading, f"| {' | '.join('-' * width for width in widths)} |", *body
 
 
 def measure(effort: Effort) -> Evidence:
     """Every law; at quick effort one."""
-    lines, found = [f"{HEADING} |", "|" + " --- |" * (HEADING.count("|"))], []
+    found, rows = [], []
     with warnings.catch_warnings():
         # The uppermost points of Cam Clay start with little pressure, as in any geostatic scene.
         warnings.simplefilter("ignore", InputWarning)
         for law in LAWS[effort]:
-            of_law, line = measured(law)
+            of_law, of_spaces = measured(law)
             found += of_law
-            lines.append(line)
-    return Evidence(tuple(found), notes=tuple(lines))
+            rows += of_spaces
+    return Evidence(tuple(found), notes=table(rows))
 
 
 def control(effort: Effort) -> tuple[Measurement, ...]:
