@@ -125,14 +125,16 @@ class Ledger:
     def made(self, elastic: float) -> float:
         """Energy from nowhere, with the elastic energy at the end of the step; zero where none was made.
 
-        In two parts, of which neither may make up for the other: what transfers gave to the motion, and what the stress
-        gave to the nodes beyond what had been stored. Where a law does not state its elastic energy (NaN), what is
-        missing in the balance by the work at the points.
+        In two parts, of which neither may make up for the other: what transfers gave to the motion, and what the nodes
+        did not pay of the energy that points hold. That is what they store, but no more than they were given: the rest
+        is made by a law whose elasticity is not conservative. Where a law does not state its elastic energy (NaN), it
+        is what is missing in the balance by the work at the points.
         """
         if math.isnan(elastic):
             return max(0.0, -self.numerical_dissipation)
-        by_stress = -self._not_stored(self.internal_work_on_nodes, elastic)
-        return max(0.0, -self.transfer_dissipation) + max(0.0, by_stress)
+        given = self.internal_work - self.internal_work_on_nodes
+        stored = -self._not_stored(self.internal_work_on_nodes, elastic)
+        return max(0.0, -self.transfer_dissipation) + max(0.0, min(given, stored))
 
     def _not_stored(self, internal_work: float, elastic: float) -> float:
         stored = elastic + self.outflow_elastic - self.initial_elastic - self.inflow_elastic
