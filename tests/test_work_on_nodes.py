@@ -9,6 +9,7 @@ from test_energy_ledger import bar
 
 from grainlaw.mpm_core.grid.grid import COMPONENTS
 from grainlaw.mpm_core.kernels.held_nodes import nodes_where
+from grainlaw.mpm_core.ledger import Ledger
 from grainlaw.mpm_core.space import PLANE_STRAIN
 from grainlaw.validation.cases.spaces.every_law import column, subject_of
 
@@ -135,3 +136,13 @@ def test_steps_beyond_the_stable_one_make_energy_that_no_transfer_gives():
         case.step(1.5 * case.critical_time_step())
     assert case.ledger.transfer_dissipation > 0.0
     assert case.ledger.made(case.elastic_energy()) > 10.0 * start
+
+
+def test_what_points_store_without_work_is_made_by_their_law_and_what_nodes_did_not_pay_is_made_by_the_method():
+    ledger = Ledger(kinetic=0.0, initial_kinetic=0.0, initial_elastic=1.0)
+    assert ledger.made(2.0) == 0.0
+    ledger.internal_work = 0.75
+    assert ledger.made(2.0) == 0.75
+    assert ledger.made(1.5) == 0.5
+    ledger.kinetic = 0.25
+    assert ledger.made(1.5) == 0.75
