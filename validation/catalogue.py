@@ -82,6 +82,7 @@ _PLACES: dict[str, tuple[str, ...]] = {
         "obstacles.turned_plane",
         "obstacles.oblique_plane",
         "obstacles.earth_pressure",
+        "obstacles.intruder_depth",
         "obstacles.janssen",
         "obstacles.turned_column",
         "obstacles.hopper_discharge",

@@ -74,13 +74,14 @@ def _free(scene: Scene, section: FreeSection, found: Placed) -> Motion:
     space = scene.in_space
     pose = at_rest(found.position, found.rotation)
     pose.velocity, pose.spin = in_3d(section.velocity), _spin(section.angular_velocity)
-    density = section.density or (section.mass or 0.0) / found.volume
+    volume = found.volume_per_radian if space.hoop else found.volume
+    density = section.density or (section.mass or 0.0) / volume
     is_free = np.zeros(6, np.bool_)
     is_free[: space.axes] = True
     is_free[0] = not space.hoop
     if section.turns and not space.hoop:
         is_free[3:] = True if space.axes == 3 else [False, False, True]
-    return Free(pose, density * found.volume, density * found.inertia, in_3d(scene.gravity), is_free)
+    return Free(pose, density * volume, density * found.inertia, in_3d(scene.gravity), is_free)
 
 
 def _spin(given: float | tuple[float, ...]) -> Floats:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from grainlaw.materials import InputError
 from grainlaw.mpm_core.obstacles import surface as surfaces
 from grainlaw.mpm_core.obstacles.motion import in_3d, turn_about
-from grainlaw.mpm_core.obstacles.surface import Surface
+from grainlaw.mpm_core.obstacles.surface import Surface, SurfaceKind
 from grainlaw.mpm_core.scene.heights import Heights
 from grainlaw.mpm_core.scene.mesh_region import MeshRegion
 from grainlaw.mpm_core.scene.model import GridSection
@@ -39,6 +39,15 @@ class Placed(NamedTuple):
     rotation: Floats
     volume: float
     inertia: Floats
+
+    @property
+    def volume_per_radian(self) -> float:
+        """What the part at r > 0 of a section sweeps around the axis in a radian [m3]: the integral of r over it."""
+        if self.surface.kind == SurfaceKind.BALL:
+            return _swept_by_disc(float(self.position[0]), float(self.surface.numbers[0]))
+        if self.surface.kind != SurfaceKind.POLYGON:
+            return np.inf
+        return _swept_by_polygon(self.surface.numbers.reshape(-1, 2) + self.position[:2])
 
 
 def placed(shape: AnyObstacleShape, grid: GridSection) -> Placed:
@@ -120,6 +129,22 @@ def _polygon(corners: Floats) -> Placed:
     polar = (cross * squares).sum() / 12.0 - area * float(center @ center)
     surface = surfaces.polygon(corners - center)
     return _placed(surface, tuple(center), abs(float(area)), abs(float(polar)))
+
+
+def _swept_by_polygon(corners: Floats) -> float:
+    import shapely
+
+    (_, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+    section = shapely.Polygon(corners).intersection(shapely.box(0.0, low, max(right, 0.0), high))
+    return float(section.area * section.centroid.x) if section.area > 0.0 else 0.0
+
+
+def _swept_by_disc(center: float, radius: float) -> float:
+    """Of a disc of a radius [m] whose centre lies at r = `center` [m]."""
+    beyond = min(max(center / radius, -1.0), 1.0)
+    half_chord = radius * np.sqrt(1.0 - beyond**2)
+    area = radius**2 * (np.pi - np.arccos(beyond)) + beyond * radius * half_chord
+    return float(center * area + 2.0 / 3.0 * half_chord**3)
 
 
 def _plane(shape: Plane) -> Placed:
