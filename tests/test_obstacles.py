@@ -160,6 +160,36 @@ def test_a_shelf_carries_the_weight_of_what_lies_on_it_and_nothing_leaks():
     assert body.speed.max() < 0.05
 
 
+SHELF_IN = {
+    "axisymmetric": {
+        "grid.upper": [0.6, 0.4],
+        "body.0.shape.upper": [0.2, 0.3],
+        "obstacle.0.shape.upper": [0.7, 0.1],
+    },
+    "3d": {
+        "gravity": [0.0, 0.0, -9.8],
+        "grid.upper": [0.4, 0.4, 0.35],
+        "boundary.left": "free_slip",
+        "boundary.front": "free_slip",
+        "body.0.shape": {"kind": "box", "lower": [0.0, 0.0, 0.1], "upper": [0.15, 0.15, 0.25]},
+        "obstacle.0.shape": {"kind": "box", "lower": [-0.1, -0.1, 0.0], "upper": [0.5, 0.5, 0.1]},
+    },
+}
+
+
+@pytest.mark.parametrize("space", SHELF_IN)
+def test_a_heap_weighs_on_a_shelf_what_it_weighs(space):
+    case = simulation(BOX, SHELF_IN[space] | {"space": space, "time.end": 1.0})
+    (body,), (shelf,) = case.bodies, case.obstacles.all
+    start = body.positions[0].max()
+    case.advance_to(0.6)
+    shelf.forces.reset()
+    case.advance_to(1.0)
+    up = case.space.axes - 1
+    assert body.positions[0].max() > 1.3 * start
+    assert -shelf.forces.means()[0][up] == pytest.approx(9.8 * body.masses.sum(), rel=5e-3)
+
+
 def test_a_piston_does_the_work_that_the_sand_takes_up():
     rising = {"obstacle.0.velocity": [0.0, 0.1], "obstacle.0.shape.lower": [-0.1, -0.5]}
     case = simulation(BOX, rising)
