@@ -20,6 +20,7 @@ from grainlaw.mpm_core.output import recorder
 from grainlaw.mpm_core.output.checkpoint import how_to_go_on
 from grainlaw.mpm_core.output.frame_series import read_collection
 from grainlaw.mpm_core.output.history import read_history
+from grainlaw.mpm_core.stepping.interrupts import interrupts_noted
 
 OUTPUTS = {
     "vtu": {"vtu": True},
@@ -355,12 +356,33 @@ def test_ctrl_c_says_how_to_go_on(tmp_path):
     assert time_of_checkpoint == pytest.approx(read_collection(out)[-1].time, abs=0.031)
 
 
-def test_ctrl_c_that_a_callback_swallowed_still_stops_the_run(tmp_path):
+@pytest.mark.parametrize("steps_before", [0, 3])
+def test_ctrl_c_in_a_callback_that_swallows_it_stops_the_run_after_the_step(tmp_path, steps_before):
+    taken = []
+
     def swallow(simulation, dt):
-        with contextlib.suppress(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGINT)
+        taken.append(dt)
+        if len(taken) > steps_before:
+            with contextlib.suppress(KeyboardInterrupt):
+                signal.raise_signal(signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt) as stopped:
         run(Scene.from_dict(COLUMN), tmp_path / "out", progress=swallow)
+    assert len(taken) == steps_before + 1
     assert stopped.value.__notes__ == [f"stopped by Ctrl-C; {how_to_go_on(tmp_path / 'out')}"]
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_ctrl_c_waits_for_the_step_and_a_second_one_does_not():
+    with interrupts_noted() as interrupts:
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            interrupts.after_step()
+    with interrupts_noted() as interrupts:
+        interrupts.after_step()
+        signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            interrupts.after_step()

@@ -138,7 +138,7 @@ def _advance(
             recorder.record(now - started)
             if progress is not None:
                 progress(simulation, dt)
-            interrupts.raise_lost()
+            interrupts.after_step()
             before = time.perf_counter()
     return durations[0] - durations[1] if len(durations) == 2 else 0.0
 
