@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from scenes_for_tests import MU_I_LC, simulation
 
+from grainlaw.materials import InputError
+
 BED = {
     "space": "axisymmetric",
     "grid": {"cell_size": 0.025, "upper": [0.5, 0.7]},
@@ -55,6 +57,12 @@ def test_the_mass_per_radian_is_of_what_the_section_sweeps_around_the_axis(shape
 def test_a_mass_is_taken_as_it_is_given():
     _, obstacle = dropped({"kind": "disc", "center": [0.0, 0.5], "radius": 0.1}, density=None, mass=2.5)
     assert obstacle.motion.mass == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize("given", [{}, {"density": None, "mass": 2.5}])
+def test_an_obstacle_beyond_the_axis_lies_outside(given):
+    with pytest.raises(InputError, match=r"obstacle.0 \('it'\) lies outside the domain"):
+        dropped({"kind": "disc", "center": [-0.5, 0.5], "radius": 0.1}, **given)
 
 
 def test_a_ball_loses_the_momentum_that_the_sand_and_the_floor_get():

@@ -126,8 +126,8 @@ def hold_at_walls(grid: Grid, layers: NDArray[np.void], clearances: NDArray[np.f
 
     Energy is counted as impulse times the mean of old and new velocity, which is zero for what stays at rest; friction
     as the tangential impulse of a friction wall times the mean sliding velocity. What acted on a node before has given
-    it its velocity without the wall less the old one, an impulse whose
-    work changes by half of the change of the new velocity.
+    it its velocity without the wall less the old one, an impulse whose work changes by half of the change of the new
+    velocity.
     """
     return TakenByWalls(*_make_hold(grid.space.axes)(grid.nodes, layers, clearances, dt))
 

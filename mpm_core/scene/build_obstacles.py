@@ -74,14 +74,16 @@ def _free(scene: Scene, section: FreeSection, found: Placed) -> Motion:
     space = scene.in_space
     pose = at_rest(found.position, found.rotation)
     pose.velocity, pose.spin = in_3d(section.velocity), _spin(section.angular_velocity)
+    # An obstacle beyond the axis sweeps nothing; that it lies outside the domain is said after this.
     volume = found.volume_per_radian if space.hoop else found.volume
-    density = section.density or (section.mass or 0.0) / volume
+    density = section.density or (section.mass or 0.0) / found.volume
+    mass = section.mass or density * volume
     is_free = np.zeros(6, np.bool_)
     is_free[: space.axes] = True
     is_free[0] = not space.hoop
     if section.turns and not space.hoop:
         is_free[3:] = True if space.axes == 3 else [False, False, True]
-    return Free(pose, density * volume, density * found.inertia, in_3d(scene.gravity), is_free)
+    return Free(pose, mass, density * found.inertia, in_3d(scene.gravity), is_free)
 
 
 def _spin(given: float | tuple[float, ...]) -> Floats:

@@ -7,7 +7,7 @@ import numpy as np
 from grainlaw.materials.errors import SimulationError
 from grainlaw.validation.dem.cell import Reduced, write_table
 from grainlaw.validation.dem.description import RoughDrum
-from grainlaw.validation.dem.liggghts import SETTLING_FRICTION, contact_values, data_file, decks, template_texts
+from grainlaw.validation.dem.liggghts import data_file, decks, flow_values, output_steps, template_texts
 from grainlaw.validation.dem.packing import (
     GLUED_DEPTH,
     Array,
@@ -30,7 +30,6 @@ MEAN_COLUMNS = ("place", "surface", "speed", "solid_fraction")
 FILL = 0.63
 # Time [s] for which the grains settle after the highest one has reached the bottom.
 SETTLING_TIME = 0.5
-SAMPLE_STEPS = 20
 # Length of a window [s], and places of the mean profiles from side to side.
 WINDOW, PLACES = 0.5, 49
 # Beyond the glued grains [m].
@@ -49,18 +48,10 @@ def files(case: RoughDrum, seed: int) -> Files:
     return {
         "grains.data": data_file(_scattered(case, number, random), wall, case.grains.density, box),
         "deck.in": deck.render(
-            case=case,
-            seed=seed,
-            skin=0.2 * case.grains.mean_diameter,
-            full_friction=contact_values(case.contact, case.contact.friction)["friction"],
-            settling_steps=round((fall + SETTLING_TIME) / case.time_step),
-            relaxation_steps=round(case.relaxation / case.time_step),
+            **flow_values(case, seed, fall + SETTLING_TIME),
             shell=_glued_radius(case) + 0.5 * case.grains.largest_diameter,
             period=2.0 * np.pi / case.angular_velocity,
-            sample_steps=SAMPLE_STEPS,
-            output_steps=_output_steps(case),
             outputs=_outputs(case),
-            **contact_values(case.contact, SETTLING_FRICTION),
         ),
     }
 
@@ -85,7 +76,7 @@ def reduce(case: RoughDrum, folder: Path) -> Reduced:
     Torque and mass are per depth.
     """
     torques = np.loadtxt(folder / "torque.txt", comments="#", ndmin=2)
-    steps = _outputs(case) * _output_steps(case)
+    steps = _outputs(case) * output_steps(case)
     if not len(torques) or torques[-1, 0] < steps:
         raise SimulationError(f"LIGGGHTS stopped before the end; see {folder / 'log.txt'}")
     drum = Drum(case.radius, case.grains.mean_diameter, case.depth)
@@ -96,7 +87,7 @@ def reduce(case: RoughDrum, folder: Path) -> Reduced:
         snapshots = [_snapshot(folder, int(step), case.time_step) for step in part[:, 0]]
         flow = mean_flow(snapshots, drum)
         mass = case.grains.density * float(snapshots[-1].solid_volumes.sum()) / case.depth
-        time = case.time_step * (part[-1, 0] - 0.5 * looks * _output_steps(case))
+        time = case.time_step * (part[-1, 0] - 0.5 * looks * output_steps(case))
         torque = float(part[:, 1].mean()) / case.depth
         values = (time, flow.angle, torque, *flow.center, mass, *flow.layer)
         rows.append([f"{value:.5g}" for value in values])
@@ -109,7 +100,7 @@ def reduce(case: RoughDrum, folder: Path) -> Reduced:
 
 def last_snapshot(case: RoughDrum, folder: Path) -> GrainSnapshot:
     """The grains at the end of a run."""
-    return _snapshot(folder, _outputs(case) * _output_steps(case), case.time_step)
+    return _snapshot(folder, _outputs(case) * output_steps(case), case.time_step)
 
 
 def _profiles(flow: Flow) -> list[list[str]]:
@@ -138,11 +129,6 @@ def _scattered(case: RoughDrum, number: int, random: np.random.Generator) -> Pac
 def _glued_radius(case: RoughDrum) -> float:
     """Of the centres of the glued grains [m]."""
     return case.radius + GLUED_DEPTH * case.grains.mean_diameter
-
-
-def _output_steps(case: RoughDrum) -> int:
-    """Steps between two outputs, a multiple of `SAMPLE_STEPS`."""
-    return SAMPLE_STEPS * round(case.output_interval / case.time_step / SAMPLE_STEPS)
 
 
 def _outputs(case: RoughDrum) -> int:

@@ -7,7 +7,7 @@ import numpy as np
 from grainlaw.materials.errors import SimulationError
 from grainlaw.validation.dem.cell import Reduced, write_table
 from grainlaw.validation.dem.description import SlotHopper
-from grainlaw.validation.dem.liggghts import SETTLING_FRICTION, contact_values, data_file, decks, template_texts
+from grainlaw.validation.dem.liggghts import data_file, decks, flow_values, output_steps, template_texts
 from grainlaw.validation.dem.packing import loose, mean_volume, random_radii
 
 Files = dict[str, str]
@@ -20,7 +20,6 @@ FILL = 0.64 * 1.05
 SETTLING_TIME = 0.4
 # Room below the floor, in which grains fall before they leave, and beyond the walls [m].
 BELOW, BESIDE = 0.15, 0.05
-SAMPLE_STEPS = 20
 
 
 def files(case: SlotHopper, seed: int) -> Files:
@@ -40,17 +39,9 @@ def files(case: SlotHopper, seed: int) -> Files:
         "plates.stl": _plates(((-half, -edge), (edge, half)), case.depth),
         "gate.stl": _plates(((-edge, edge),), case.depth),
         "deck.in": deck.render(
-            case=case,
-            seed=seed,
-            skin=0.2 * case.grains.mean_diameter,
-            full_friction=contact_values(case.contact, case.contact.friction)["friction"],
-            settling_steps=round((fall + SETTLING_TIME) / case.time_step),
-            relaxation_steps=round(case.relaxation / case.time_step),
+            **flow_values(case, seed, fall + SETTLING_TIME),
             half_layer=0.5 * case.grains.mean_diameter,
-            sample_steps=SAMPLE_STEPS,
-            output_steps=_output_steps(case),
             outputs=round(case.end / case.output_interval),
-            **contact_values(case.contact, SETTLING_FRICTION),
         ),
     }
 
@@ -64,7 +55,7 @@ def reduce(case: SlotHopper, folder: Path) -> Reduced:
     """Write the mass above the floor per depth [kg/m], and how densely and fast the opening is passed, over time."""
     above = np.loadtxt(folder / "above.txt", comments="#", ndmin=2)
     within = np.loadtxt(folder / "opening.txt", comments="#", ndmin=2)
-    steps = round(case.end / case.output_interval) * _output_steps(case)
+    steps = round(case.end / case.output_interval) * output_steps(case)
     if not len(above) or above[-1, 0] < steps or len(within) != len(above) - 1:
         raise SimulationError(f"LIGGGHTS stopped before the end; see {folder / 'log.txt'}")
     layer = case.opening * case.depth * case.grains.mean_diameter * case.grains.density
@@ -76,11 +67,6 @@ def reduce(case: SlotHopper, folder: Path) -> Reduced:
         rows.append([f"{value:.6g}" for value in values])
     write_table(folder / TABLE, COLUMNS, rows)
     return Reduced(steps, round(above[0, 2]), TABLE)
-
-
-def _output_steps(case: SlotHopper) -> int:
-    """Steps between two outputs, a multiple of `SAMPLE_STEPS`."""
-    return SAMPLE_STEPS * round(case.output_interval / case.time_step / SAMPLE_STEPS)
 
 
 def _plates(pieces: tuple[tuple[float, float], ...], depth: float) -> str:

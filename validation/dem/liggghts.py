@@ -5,13 +5,15 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from grainlaw.validation.dem.description import Contact
+from grainlaw.validation.dem.description import Contact, RoughDrum, SlotHopper
 from grainlaw.validation.dem.packing import Array, Packing
 
 GRAIN, GLUED, PLANE, SMOOTH = 1, 2, 3, 4
 
 # Friction between grains while the packing settles; low, so that it becomes dense.
 SETTLING_FRICTION = 0.1
+# Steps between two samples of what is averaged until the next output.
+SAMPLE_STEPS = 20
 
 
 @cache
@@ -42,6 +44,25 @@ def contact_values(contact: Contact, friction: float) -> dict[str, Any]:
         "contact": contact,
         "friction": [0.0 if SMOOTH in pair else friction for pair in pairs],
         "rolling": [min(arms[i], arms[j]) * contact.rolling_arm for i, j in pairs],
+    }
+
+
+def output_steps(case: SlotHopper | RoughDrum) -> int:
+    """Steps between two outputs, a multiple of `SAMPLE_STEPS`."""
+    return SAMPLE_STEPS * round(case.output_interval / case.time_step / SAMPLE_STEPS)
+
+
+def flow_values(case: SlotHopper | RoughDrum, seed: int, settling_time: float) -> dict[str, Any]:
+    """For the deck of a packing that settles for a time [s] with low friction, is cut, relaxes, and then flows."""
+    return contact_values(case.contact, SETTLING_FRICTION) | {
+        "case": case,
+        "seed": seed,
+        "skin": 0.2 * case.grains.mean_diameter,
+        "full_friction": contact_values(case.contact, case.contact.friction)["friction"],
+        "settling_steps": round(settling_time / case.time_step),
+        "relaxation_steps": round(case.relaxation / case.time_step),
+        "sample_steps": SAMPLE_STEPS,
+        "output_steps": output_steps(case),
     }
 
 

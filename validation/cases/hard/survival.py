@@ -73,8 +73,7 @@ def trial(simulation: Simulation, end: float, lead: Lead = in_stable_steps) -> T
 def created_energy(simulation: Simulation) -> float:
     """Energy made over the energy released so far (`Ledger.made`); zero where none was."""
     ledger = simulation.ledger
-    released = ledger.initial_kinetic + max(0.0, -ledger.potential)
-    return ledger.made(simulation.elastic_energy()) / released if released > 0.0 else 0.0
+    return ledger.made(simulation.elastic_energy()) / ledger.released if ledger.released > 0.0 else 0.0
 
 
 def survival(label: str, found: Trial) -> tuple[Measurement, ...]:
